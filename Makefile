@@ -1,0 +1,36 @@
+# make run: set up and open the explorer on the paper's vehicle.  make test: set up and run all tests, the browser's included.
+PYTHON := $(firstword $(shell command -v python3.11) $(shell command -v python3))
+BIN := .venv/bin
+AS_ROOT := $(if $(filter-out 0,$(shell id -u)),sudo,)
+
+.PHONY: setup run test check bench chromium clean
+
+setup: .venv/ready
+
+# Pinned versions first, then Trackride itself; the last line compiles the kernel once, ahead of the first start.
+.venv/ready: requirements.txt pyproject.toml
+	$(PYTHON) -m venv .venv || { $(AS_ROOT) apt-get update && $(AS_ROOT) apt-get install -y python3-venv && $(PYTHON) -m venv --clear .venv; }
+	$(BIN)/python -m pip install --quiet --requirement requirements.txt
+	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	$(BIN)/python -c "from model import load_config, simulate; simulate(load_config('paper'))"
+	touch $@
+
+run: setup
+	$(BIN)/trackride explore
+
+test: setup chromium
+	$(BIN)/python -m pytest
+
+chromium:
+	@command -v chromium chromium-browser google-chrome >/dev/null || { $(AS_ROOT) apt-get update && $(AS_ROOT) apt-get install -y chromium; }
+
+check: setup
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+
+bench: setup
+	$(BIN)/python -m tests.benchmarks
+
+clean:
+	rm -rf .venv build *.egg-info

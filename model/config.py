@@ -1,0 +1,326 @@
+"""The configuration of one run: frozen, typed, validated once where it enters; from YAML and back.
+
+Defaults, ranges and descriptions are in model/parameters.py, what may stand together in model/validation.py.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import resources
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from model.parameters import PARAMETER, PARAMETERS, Value
+from model.validation import EXCLUSIVE, ConfigError, Fault, check_values, unknown_fault, wheel_positions
+from model.yaml_text import dump_yaml, parse_yaml
+
+__all__ = [
+    "Config",
+    "ConfigError",
+    "Fault",
+    "config_from_dict",
+    "dump_config",
+    "load_config",
+    "parse_config",
+    "parse_value",
+    "preset_names",
+    "preset_title",
+]
+
+SIZE_LIMIT = 1_000_000  # bytes of a configuration file
+_PRESETS = resources.files("configs")
+
+
+def _field(key: str) -> Any:
+    """A field with the default and the description of the parameter table."""
+    return Field(default=PARAMETER[key].default, description=PARAMETER[key].description)
+
+
+class Section(BaseModel):
+    """Part of a configuration. Its values are checked when a Config is made of it."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Chassis(Section):
+    mass: float = _field("vehicle.chassis.mass")
+    pitch_inertia: float = _field("vehicle.chassis.pitch_inertia")
+    cg_height: float = _field("vehicle.chassis.cg_height")
+
+
+class RoadWheels(Section):
+    """With `positions`, the other three are derived: number of wheels, mean spacing, middle."""
+
+    count: int = _field("vehicle.road_wheels.count")
+    spacing: float = _field("vehicle.road_wheels.spacing")
+    offset: float = _field("vehicle.road_wheels.offset")
+    positions: tuple[float, ...] | None = _field("vehicle.road_wheels.positions")
+    radius: float = _field("vehicle.road_wheels.radius")
+    mass: float = _field("vehicle.road_wheels.mass")
+    inertia: float | None = _field("vehicle.road_wheels.inertia")
+
+    @property
+    def x(self) -> tuple[float, ...]:
+        """x of each road wheel's centre in the design pose, front first, m."""
+        return wheel_positions(self.positions, self.count, self.spacing, self.offset)
+
+
+class RoadArms(Section):
+    length: float = _field("vehicle.road_arms.length")
+    angle_deg: float = _field("vehicle.road_arms.angle_deg")
+    mass: float = _field("vehicle.road_arms.mass")
+    inertia: float | None = _field("vehicle.road_arms.inertia")
+
+
+class RoadSuspension(Section):
+    basis: str = _field("vehicle.road_suspension.basis")
+    stiffness: float | tuple[float, ...] = _field("vehicle.road_suspension.stiffness")
+    damping: float | tuple[float, ...] = _field("vehicle.road_suspension.damping")
+
+
+class ImaginaryWheels(Section):
+    enabled: bool = _field("vehicle.imaginary_wheels.enabled")
+    mass: float = _field("vehicle.imaginary_wheels.mass")
+    inertia: float | None = _field("vehicle.imaginary_wheels.inertia")
+
+
+class ImaginaryArms(Section):
+    mass: float = _field("vehicle.imaginary_arms.mass")
+
+
+class ImaginarySuspension(Section):
+    """With `preload_force`, `preload_deflection` means nothing."""
+
+    basis: str = _field("vehicle.imaginary_suspension.basis")
+    stiffness: float = _field("vehicle.imaginary_suspension.stiffness")
+    damping: float = _field("vehicle.imaginary_suspension.damping")
+    preload_deflection: float = _field("vehicle.imaginary_suspension.preload_deflection")
+    preload_force: float | None = _field("vehicle.imaginary_suspension.preload_force")
+    reacts_on: str = _field("vehicle.imaginary_suspension.reacts_on")
+
+
+class Vehicle(Section):
+    chassis: Chassis = Chassis()
+    road_wheels: RoadWheels = RoadWheels()
+    road_arms: RoadArms = RoadArms()
+    road_suspension: RoadSuspension = RoadSuspension()
+    imaginary_wheels: ImaginaryWheels = ImaginaryWheels()
+    imaginary_arms: ImaginaryArms = ImaginaryArms()
+    imaginary_suspension: ImaginarySuspension = ImaginarySuspension()
+
+
+class Contact(Section):
+    normal_stiffness: float = _field("contact.normal_stiffness")
+    normal_damping: float = _field("contact.normal_damping")
+    tangential_stiffness: float = _field("contact.tangential_stiffness")
+    tangential_damping: float = _field("contact.tangential_damping")
+    friction: float = _field("contact.friction")
+
+
+class Drive(Section):
+    mode: str = _field("drive.mode")
+    speed_kmh: float = _field("drive.speed_kmh")
+    proportional_gain: float = _field("drive.proportional_gain")
+    integral_gain: float = _field("drive.integral_gain")
+    force_limit: float = _field("drive.force_limit")
+
+
+class FlatRoad(Section):
+    type: Literal["flat"] = "flat"
+
+
+class SineRoad(Section):
+    type: Literal["sine"] = "sine"
+    amplitude: float = _field("road.amplitude")
+    wavelength: float = _field("road.wavelength")
+    start: float | None = _field("road.start")
+    ramp: float | None = _field("road.ramp")
+
+
+class HalfRoundRoad(Section):
+    type: Literal["half_round"] = "half_round"
+    position: float = _field("road.position")
+    height: float = _field("road.height")
+    radius: float = _field("road.radius")
+
+
+Road = Annotated[FlatRoad | SineRoad | HalfRoundRoad, Field(discriminator="type")]
+
+
+class Simulation(Section):
+    duration: float = _field("simulation.duration")
+    output_rate: float = _field("simulation.output_rate")
+    integrator: str = _field("simulation.integrator")
+    step: float = _field("simulation.step")
+    rtol: float = _field("simulation.rtol")
+    atol: float = _field("simulation.atol")
+    baumgarte_alpha: float = _field("simulation.baumgarte_alpha")
+    baumgarte_beta: float = _field("simulation.baumgarte_beta")
+
+
+class Config(Section):
+    """One vehicle on one road, and how to compute it. Making one checks everything (ConfigError)."""
+
+    name: str = _field("name")
+    description: str = _field("description")
+    vehicle: Vehicle = Vehicle()
+    contact: Contact = Contact()
+    drive: Drive = Drive()
+    road: Road = SineRoad()
+    simulation: Simulation = Simulation()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _check(cls, given: Any) -> dict[str, Any]:
+        if isinstance(given, Config):
+            return given.__dict__
+        if isinstance(given, dict):
+            given = {key: _plain(part) for key, part in given.items()}
+        values = check_values(given)
+        values.setdefault("road.type", PARAMETER["road.type"].default)
+        positions = values.get("vehicle.road_wheels.positions")
+        if isinstance(positions, tuple):
+            values["vehicle.road_wheels.count"] = len(positions)
+            values["vehicle.road_wheels.spacing"] = (positions[0] - positions[-1]) / (len(positions) - 1)
+            values["vehicle.road_wheels.offset"] = (positions[0] + positions[-1]) / 2
+        return _nest(values)
+
+    def value(self, path: str) -> Value:
+        """The value at a dotted path. Raises KeyError for a key that this configuration does not have."""
+        if path not in PARAMETER or not PARAMETER[path].applies_to(self.road.type):
+            raise KeyError(path)
+        found: Any = self
+        for name in path.split("."):
+            found = getattr(found, name)
+        return found
+
+    def values(self) -> dict[str, Value]:
+        """Everything a file must say to get this configuration, by dotted path, in the table's order."""
+        values = {
+            parameter.key: self.value(parameter.key) for parameter in PARAMETERS if parameter.applies_to(self.road.type)
+        }
+        for one, others in EXCLUSIVE:
+            if values[one] is not None:
+                for other in others:
+                    del values[other]
+        return {path: value for path, value in values.items() if value is not None}
+
+    def replace(self, changes: Mapping[str, Any]) -> Config:
+        """A new configuration with these values, by dotted path; None takes an optional value away.
+
+        Of two ways to say the same (positions or count, spacing, offset; preload force or deflection) the new
+        one stays, and a new road type drops what only the old one had. Raises ConfigError with all faults.
+        """
+        values: dict[str, Any] = dict(self.values())
+        for one, others in EXCLUSIVE:
+            if changes.get(one) is not None:
+                for other in others:
+                    values.pop(other, None)
+            elif one in values and (one in changes or any(other in changes for other in others)):
+                del values[one]
+                values |= {other: self.value(other) for other in others}
+        road_type = str(changes.get("road.type", self.road.type))
+        known = {path: value for path, value in values.items() if PARAMETER[path].applies_to(road_type)}
+        known |= {path: value for path, value in changes.items() if path in PARAMETER}
+        faults = [unknown_fault(path, value) for path, value in changes.items() if path not in PARAMETER]
+        try:
+            config = config_from_dict(_nest(known))
+        except ConfigError as error:
+            faults += error.faults
+        if faults:
+            raise ConfigError(faults)
+        return config
+
+
+def config_from_dict(given: Any) -> Config:
+    """A Config from nested mappings. Raises ConfigError with all faults."""
+    return Config.model_validate(given)
+
+
+def parse_config(text: str, source: str = "") -> Config:
+    """A Config from YAML text; `source` names it in messages. Raises ConfigError with all faults."""
+    try:
+        return config_from_dict(_parsed(text))
+    except ConfigError as error:
+        raise ConfigError(error.faults, source) from None
+
+
+def parse_value(text: str) -> Any:
+    """A single value as a YAML file would give it: text, a list, or None. Raises ConfigError."""
+    return _parsed(text)
+
+
+def dump_config(config: Config) -> str:
+    """The whole configuration as YAML; parse_config gives the same one back."""
+    return dump_yaml(_nest(config.values()))
+
+
+def load_config(path_or_preset: str | Path) -> Config:
+    """A Config from a preset's name or a YAML file. Raises ConfigError with all faults."""
+    name = str(path_or_preset)
+    try:
+        if name in preset_names():
+            data = (_PRESETS / f"{name}.yaml").read_bytes()
+        else:
+            with open(path_or_preset, "rb") as file:
+                data = file.read(SIZE_LIMIT + 1)
+    except FileNotFoundError:
+        known = ", ".join(preset_names())
+        raise _text_error(f"there is no such file, nor a preset of that name ({known})", name) from None
+    except (OSError, ValueError) as error:
+        raise _text_error(f"cannot be read: {getattr(error, 'strerror', None) or error}", name) from None
+    if len(data) > SIZE_LIMIT:
+        raise _text_error(f"the file is larger than {SIZE_LIMIT} bytes", name)
+    try:
+        return parse_config(data.decode("utf-8-sig"), source=name)
+    except UnicodeDecodeError:
+        raise _text_error("the file is not UTF-8 text", name) from None
+
+
+def preset_names() -> list[str]:
+    """Names of the configurations that come with the program, the paper's first."""
+    names = (file.name.removesuffix(".yaml") for file in _PRESETS.iterdir() if file.name.endswith(".yaml"))
+    return sorted(names, key=lambda name: (not name.startswith("paper"), name))
+
+
+def preset_title(name: str) -> str:
+    """The title of a preset."""
+    return load_config(name).name
+
+
+def _plain(part: Any) -> Any:
+    """A section given as an object, as the mapping it was made of."""
+    if not isinstance(part, Section):
+        return part
+    road = {"type": part.type} if isinstance(part, FlatRoad | SineRoad | HalfRoundRoad) else {}
+    return part.model_dump(exclude_unset=True) | road
+
+
+def _nest(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Nested mappings from values by dotted path."""
+    nested: dict[str, Any] = {}
+    for path, value in values.items():
+        *sections, leaf = path.split(".")
+        inner = nested
+        for section in sections:
+            inner = inner.setdefault(section, {})
+        inner[leaf] = value
+    return nested
+
+
+def _parsed(text: str) -> Any:
+    try:
+        return parse_yaml(text)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark
+        where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
+        raise _text_error(where + " ".join((error.problem or "not YAML").split())) from None
+    except yaml.YAMLError as error:
+        raise _text_error(f"not YAML text: {' '.join(str(error).split())}") from None
+
+
+def _text_error(message: str, source: str = "") -> ConfigError:
+    return ConfigError([Fault("", "", message)], source)

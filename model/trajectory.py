@@ -1,0 +1,132 @@
+"""What happened in a run: the arrays of the result file, with the configuration that made them."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import asdict, dataclass, fields
+from functools import cached_property
+from io import BytesIO, StringIO
+from pathlib import Path
+from typing import IO, Any
+from zipfile import BadZipFile
+
+import numpy as np
+
+from model.config import Config, dump_config, parse_config
+from model.vehicle import System, build_system
+
+
+@dataclass(frozen=True)
+class RunStatistics:
+    """How much work a run was."""
+
+    steps: int
+    rejected_steps: int
+    evaluations: int  # of the right-hand side
+    smallest_step: float  # s
+    seconds: float  # wall-clock time of the whole run, s
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """One run. N samples, B bodies, W wheels (road 1…n, then imaginary), J joints; SI, radians, world frame."""
+
+    t: np.ndarray  # (N,) s
+    q: np.ndarray  # (N, B, 3) x, y, θ of every centre of mass
+    v: np.ndarray  # (N, B, 3) their rates
+    a: np.ndarray  # (N, B, 3) their accelerations
+    normal_load: np.ndarray  # (N, W) f_n, N
+    traction: np.ndarray  # (N, W) f_t along the road, N
+    tangential_displacement: np.ndarray  # (N, W) ξ, m
+    drive_force: np.ndarray  # (N,) F, N
+    multipliers: np.ndarray  # (N, rows of C) λ
+    constraint_residual: np.ndarray  # (N,) max |C(q)|, m
+    static_load: np.ndarray  # (W,) f_n at the static equilibrium, N
+    config: Config
+    status: str  # complete | cancelled | diverged at t = …: reason
+    advice: str  # what to try when it is not complete, else empty
+    statistics: RunStatistics
+
+    @cached_property
+    def system(self) -> System:
+        """The vehicle of this run."""
+        return build_system(self.config)
+
+    @property
+    def complete(self) -> bool:
+        return self.status == "complete"
+
+    def save(self, path: str | Path) -> None:
+        """Write the run as .npz (everything) or .csv (a table of motion and loads, a row a sample).
+
+        Raises ValueError for another suffix, OSError when it cannot be written; a file is there whole or not at all.
+        """
+        path = Path(path)
+        writers = {".npz": self._write_npz, ".csv": self._write_csv}
+        if path.suffix not in writers:
+            raise ValueError(f"cannot save a run as {path.name!r}: the name must end in .npz or .csv")
+        partial = path.with_name(f".{path.name}.part")
+        try:
+            with partial.open("wb") as file:
+                writers[path.suffix](file)
+            partial.replace(path)
+        finally:
+            partial.unlink(missing_ok=True)
+
+    @classmethod
+    def load(cls, path: str | Path) -> Trajectory:
+        """Read a run from .npz. Raises OSError, ValueError (not such a file) or ConfigError (its configuration)."""
+        try:
+            with np.load(path, allow_pickle=False) as file:
+                arrays = {name: file[name] for name in file.files}
+            counters = RunStatistics(**{f.name: arrays.pop(f.name).item() for f in fields(RunStatistics)})
+            texts = {name: str(arrays.pop(name)) for name in _TEXTS}
+            parts = {name: arrays[name] for name in _ARRAYS}
+        except (KeyError, TypeError, EOFError, BadZipFile) as error:
+            raise ValueError(f"{path} is not a run saved by trackride run --out: {error}") from error
+        return cls(
+            **parts,
+            config=parse_config(texts["config"], source=f"{path}: config"),
+            status=texts["status"],
+            advice=texts["advice"],
+            statistics=counters,
+        )
+
+    def to_bytes(self, suffix: str) -> bytes:
+        """The content of the file that `save` would write: ".npz" or ".csv"."""
+        buffer = BytesIO()
+        {".npz": self._write_npz, ".csv": self._write_csv}[suffix](buffer)
+        return buffer.getvalue()
+
+    def _write_npz(self, file: IO[bytes]) -> None:
+        entries: dict[str, Any] = {name: getattr(self, name) for name in _ARRAYS}
+        entries |= {"config": dump_config(self.config), "status": self.status, "advice": self.advice}
+        np.savez_compressed(file, **entries, **asdict(self.statistics))
+
+    def _write_csv(self, file: IO[bytes]) -> None:
+        names = wheel_names(self.system)
+        columns = {
+            "t [s]": self.t,
+            "hull x [m]": self.q[:, 0, 0],
+            "hull y [m]": self.q[:, 0, 1],
+            "hull pitch [rad]": self.q[:, 0, 2],
+            "hull speed [m/s]": self.v[:, 0, 0],
+            "hull vertical acceleration [m/s2]": self.a[:, 0, 1],
+            "drive force [N]": self.drive_force,
+        }
+        columns |= {f"normal load {name} [N]": self.normal_load[:, w] for w, name in enumerate(names)}
+        columns |= {f"traction {name} [N]": self.traction[:, w] for w, name in enumerate(names)}
+        text = StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows([f"{value:.9g}" for value in row] for row in np.column_stack(list(columns.values())))
+        file.write(text.getvalue().encode())
+
+
+def wheel_names(system: System) -> list[str]:
+    """R1…Rn for road wheels, I1…Im for imaginary wheels, front first: the order of all (…, W) arrays."""
+    return [f"R{i + 1}" for i in range(system.n)] + [f"I{i + 1}" for i in range(system.m)]
+
+
+_TEXTS = ("config", "status", "advice")
+_ARRAYS = tuple(f.name for f in fields(Trajectory) if f.name not in (*_TEXTS, "statistics"))

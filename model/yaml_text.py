@@ -1,0 +1,87 @@
+"""YAML as this project reads and writes it: a strict, harmless subset.
+
+Reading gives mappings, lists, text and None only; whether a text is a number is for the parameter table to
+say. So `6e7` is a number, duplicate keys are errors, and tags, anchors and aliases (alias bombs) are refused.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Hashable
+from typing import Any
+
+import yaml
+
+DEPTH_LIMIT = 20  # of nested mappings and lists
+
+
+def parse_yaml(text: str) -> Any:
+    """The value that a YAML text describes: dict, list, str or None, nested.
+
+    Raises yaml.YAMLError with line and column for anything outside the subset.
+    """
+    loader = _Loader(text)
+    try:
+        return loader.get_single_data()
+    finally:
+        loader.dispose()
+
+
+def dump_yaml(value: dict[str, Any]) -> str:
+    """A mapping of plain values as YAML: sections in blocks, leaves of a section in one flow mapping."""
+    return yaml.dump(value, Dumper=_Dumper, sort_keys=False, default_flow_style=None, allow_unicode=True, width=160)
+
+
+class _Loader(yaml.SafeLoader):
+    yaml_implicit_resolvers: dict[str, Any] = {}  # noqa: RUF012 (PyYAML's own way)
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self.depth = 0
+
+    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
+        event = self.peek_event()
+        if isinstance(event, yaml.AliasEvent) or getattr(event, "anchor", None) is not None:
+            raise _refused("anchors and aliases are not used here", event)
+        if getattr(event, "tag", None) is not None:
+            raise _refused("tags are not used here", event)
+        if self.depth >= DEPTH_LIMIT:
+            raise _refused(f"nested deeper than {DEPTH_LIMIT} levels", event)
+        self.depth += 1
+        node = super().compose_node(parent, index)
+        self.depth -= 1
+        return node
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Hashable, Any]:
+        mapping: dict[Hashable, Any] = {}
+        for key_node, value_node in node.value:
+            if not isinstance(key_node, yaml.ScalarNode):
+                raise _refused("a key must be a plain word", key_node)
+            if key_node.value in mapping:
+                raise _refused(f"the key {key_node.value[:60]!r} is given twice", key_node)
+            mapping[key_node.value] = self.construct_object(value_node, deep=True)
+        return mapping
+
+
+_Loader.add_implicit_resolver("tag:yaml.org,2002:null", re.compile(r"^(?:~|null|Null|NULL|)$"), ["~", "n", "N", ""])
+
+
+def _refused(problem: str, where: Any) -> yaml.MarkedYAMLError:
+    return yaml.MarkedYAMLError(problem=problem, problem_mark=where.start_mark)
+
+
+class _Dumper(yaml.SafeDumper):
+    pass
+
+
+def _represent_float(dumper: _Dumper, value: float) -> yaml.ScalarNode:
+    """The shortest text that reads back as the same number here and in any YAML reader: 5125, 0.7, 6.0e+7."""
+    text = f"{value:g}" if float(f"{value:g}") == value else repr(value)
+    mantissa, e, exponent = text.partition("e")
+    if e:
+        text = f"{mantissa if '.' in mantissa else mantissa + '.0'}e{int(exponent):+d}"
+    kind = "float" if "." in text else "int"
+    return dumper.represent_scalar(f"tag:yaml.org,2002:{kind}", text)
+
+
+_Dumper.add_representer(float, _represent_float)
