@@ -28,5 +28,8 @@ _OPTIONS: dict[str, Any] = {
     "error_model": "numpy",
     "fastmath": {"contract", "arcp", "reassoc", "nsz"},
 }
+allocating = njit(**_OPTIONS)
+# Without reference counting: for functions that allocate nothing and are handed many arrays, it took most of the time.
+_OPTIONS["_nrt"] = False
 compiled = njit(**_OPTIONS)
 inlined = njit(forceinline=True, **_OPTIONS)

@@ -61,6 +61,49 @@ def unpack(y: np.ndarray, bodies: int) -> tuple[np.ndarray, np.ndarray, np.ndarr
 
 
 @inlined
+def cos_sin(angle):
+    """Both, to 1e-16 for angles of a few turns: reduced to ±π/4, then the polynomials of fdlibm's k_cos and k_sin."""
+    quarters = np.rint(angle * (2.0 / np.pi))
+    x = angle - quarters * (0.5 * np.pi)
+    z = x * x
+    sin = x + x * z * (
+        -1.66666666666666324348e-01
+        + z
+        * (
+            8.33333333332248946124e-03
+            + z
+            * (
+                -1.98412698298579493134e-04
+                + z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10))
+            )
+        )
+    )
+    cos = (
+        1.0
+        - 0.5 * z
+        + z
+        * z
+        * (
+            4.16666666666666019037e-02
+            + z
+            * (
+                -1.38888888888741095749e-03
+                + z
+                * (
+                    2.48015872894767294178e-05
+                    + z
+                    * (-2.75573143513906633035e-07 + z * (2.08757232129817482790e-09 - z * 1.13596475577881948265e-11))
+                )
+            )
+        )
+    )
+    quadrant = int(quarters) & 3
+    swapped = quadrant & 1
+    cos, sin = (sin if swapped else cos), (cos if swapped else sin)
+    return (-cos if quadrant in (1, 2) else cos), (-sin if quadrant >= 2 else sin)
+
+
+@inlined
 def _fold_arm(m, I, p_x, p_y, w_x, w_y, K_xx, K_xy, K_yy, b_x, b_y, F_y, tau):
     """An arm that carries (K, b = K γ + f) at w, seen from its pivot p (both from its centre of mass).
 
@@ -166,7 +209,7 @@ def rates(system, road, t, y, dy, work):
             tau_chassis -= tau
         else:
             work.tau[i] -= tau  # eq. (3)
-        cos, sin = np.cos(theta[link]), np.sin(theta[link])
+        cos, sin = cos_sin(theta[link])
         u = system.u_j[2 * n + i]
         p_x, p_y = cos * u[0] - sin * u[1], sin * u[0] + cos * u[1]
         u = system.u_i[2 * n + m + i]
@@ -186,7 +229,7 @@ def rates(system, road, t, y, dy, work):
         _remember(work.arm[n + i], p_x, p_y, w_x, w_y, gamma_x, gamma_y, e_x, e_y, T, K_xx, K_xy, K_yy, f_x, f_y)
 
     # Fold each chain into its road arm, and the road arms into the chassis
-    cos, sin = np.cos(theta[0]), np.sin(theta[0])
+    cos, sin = cos_sin(theta[0])
     w0 = omega[0]
     M_xx, M_xy, M_yy = system.mass[0], 0.0, system.mass[0]
     M_xt, M_yt, M_tt = 0.0, 0.0, system.inertia[0]
@@ -210,7 +253,7 @@ def rates(system, road, t, y, dy, work):
             K_xx, K_xy, K_yy = K_xx + held[9], held[10], K_yy + held[11]
             f_x += held[9] * gamma_x + held[10] * gamma_y + held[12]
             f_y += held[10] * gamma_x + held[11] * gamma_y + held[13]
-        c, s_ = np.cos(theta[arm]), np.sin(theta[arm])
+        c, s_ = cos_sin(theta[arm])
         u = system.u_j[i]
         p_x, p_y = c * u[0] - s_ * u[1], s_ * u[0] + c * u[1]
         u = system.u_i[n + i]

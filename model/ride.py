@@ -112,7 +112,7 @@ def _arms_turned_far(trajectory: Trajectory) -> Iterator[RideWarning]:
     if abs(turn[sample, arm]) > ARM_LIMIT:
         angle = np.degrees(turn[sample, arm])
         yield RideWarning(
-            f"Road arm {arm + 1} turned by {angle:+.0f}° (t = {trajectory.t[sample]:.2f} s)",
+            f"Road arm {arm + 1} turned by {angle:+.3g}° (t = {trajectory.t[sample]:.2f} s)",
             "The paper's suspension has no bump stops: a real one would have hit them before 45°.",
         )
 
@@ -123,7 +123,7 @@ def _wheels_sunk_deep(trajectory: Trajectory) -> Iterator[RideWarning]:
     if depth[sample, wheel] > SINKING_LIMIT * trajectory.system.r:
         name = wheel_names(trajectory.system)[wheel]
         yield RideWarning(
-            f"Wheel {name} sank {1000 * depth[sample, wheel]:.0f} mm into the ground "
+            f"Wheel {name} sank {1000 * depth[sample, wheel]:.3g} mm into the ground "
             f"(t = {trajectory.t[sample]:.2f} s)",
             "The contact law is meant for less than a tenth of the radius: take this load with care, "
             "or stiffen the ground.",

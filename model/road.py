@@ -17,7 +17,6 @@ import numpy as np
 from model import config as configuration
 from model.config import Config
 from model.road_table import CELLS_PER_RADIUS, RoadTable, nearest_points, tabulate
-from model.vehicle import design_positions
 
 Derivatives = tuple[np.ndarray, np.ndarray, np.ndarray]
 RAMP_AHEAD = 1.0  # m from the first wheel to the default start of the road
@@ -83,8 +82,8 @@ class Road:
 
 def build_road(config: Config) -> Road:
     """The road of a configuration, under its wheels."""
-    front_wheel = float(design_positions(config)[0])
-    return Road(PROFILES[config.road.type](config.road, front_wheel), config.vehicle.road_wheels.radius)
+    wheels = config.vehicle.road_wheels
+    return Road(PROFILES[config.road.type](config.road, wheels.x[0]), wheels.radius)
 
 
 def _refined(nodes: np.ndarray, longest: float) -> np.ndarray:

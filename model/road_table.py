@@ -12,12 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from model.compiled import compiled, inlined
+from model.compiled import allocating, compiled, inlined
 
 REACH = 1.5  # half-width of the table's search window, in wheel radii
 CELLS_PER_RADIUS = 8  # on level stretches, so that no minimum hides inside a long cell
 SAFE = 0.15  # least curvature of D/2 that counts as "one minimum only"
-FINAL_STEP = 1e-4  # m: from here, the third-order step's error is below 1e-11 m
+SINKING = 0.04  # of the radius: how deep a wheel is taken to have sunk in for a first guess of its contact point
+FINAL_ERROR = 1e-12  # m: of the contact point along the road
 
 
 Row = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # x, h, h′, h″ at nodes
@@ -35,6 +36,8 @@ class RoadTable(NamedTuple):
     first_cell: np.ndarray  # (bins,) the cell in which a bin begins
     ceiling: np.ndarray  # (bins,) a centre above this does not touch, m
     safe: np.ndarray  # (bins,) one minimum only, for every wheel in contact
+    touch: np.ndarray  # (bins + 1,) first guess of the contact point, the centre above a bin's edge, m
+    final_step: float  # m: a Halley step shorter than this is the last
     radius: float
     reach: float
     repeat_from: float
@@ -83,10 +86,14 @@ def tabulate(rows: list[Row], period: float, radius: float) -> RoadTable:
     steepness = np.maximum(np.abs(s_a), np.abs(s_b)) ** 2
     bend = np.maximum(np.abs(c_a), np.abs(c_b)) + np.abs(d1)
     slack = size**2 * (1 + steepness + 2 * reach * bend) / 2
+    # A Halley step s leaves about s³ [(g″/2g′)² − g‴/6g′]
+    third, fourth = np.abs(6 * coefficients[:, 3]), np.abs(24 * coefficients[:, 4])
+    steep = np.sqrt(steepness)
+    wildness = (3 * steep * bend + radius * third) ** 2 / 4 + bend**2 / 2 + steep * third + radius * fourth / 6
     bins = int(np.clip(np.ceil((node[-1] - node[0]) / max(np.median(size), 1e-3)), 16, 1_000_000))
     edges = np.linspace(node[0], node[-1], bins + 1)
     first_cell = np.clip(np.searchsorted(node, edges[:-1], side="right") - 1, 0, len(size) - 1)
-    ceiling, safe = _judge_bins(edges, node, height, coefficients, corner, radius)
+    ceiling, safe, touch = _judge_bins(edges, node, height, coefficients, corner, radius)
     node[-1] = np.inf  # the first and last cells are level and reach on without end
     return RoadTable(
         node=node,
@@ -98,6 +105,8 @@ def tabulate(rows: list[Row], period: float, radius: float) -> RoadTable:
         first_cell=first_cell,
         ceiling=ceiling,
         safe=safe,
+        touch=touch,
+        final_step=float(np.clip(np.cbrt(FINAL_ERROR / max(wildness.max(), 1e-12)), 1e-5, 2e-3)),
         radius=radius,
         reach=reach,
         repeat_from=repeat_from,
@@ -109,14 +118,17 @@ def _level(x: np.ndarray, height: float) -> Row:
     return x, np.full(x.shape, height), np.zeros(x.shape), np.zeros(x.shape)
 
 
-@compiled
+@allocating
 def _judge_bins(edges, node, height, coefficients, corner, radius):
-    """For each bin of wheel positions X: the highest centre that touches, and whether D is convex for all below it."""
+    """For each bin of wheel positions X: the highest centre that touches, whether D is convex for all below it, and
+    (at the bins' edges) where a wheel that has sunk in a little touches.
+    """
     bins = len(edges) - 1
     cells = len(node) - 1
     ceiling = np.empty(bins)
     safe = np.empty(bins, dtype=np.bool_)
-    first = 0
+    touch = edges.copy()
+    first, under = 0, 0
     for b in range(bins):
         low, high = edges[b] - radius, edges[b + 1] + radius
         while first < cells - 1 and node[first + 1] < low:
@@ -137,7 +149,19 @@ def _judge_bins(edges, node, height, coefficients, corner, radius):
                 if 1.0 + h1 * h1 - (ceiling[b] - h) * max(h2, 0.0) < SAFE:
                     safe[b] = False
             c += 1
-    return ceiling, safe
+    for b in range(1, bins):
+        if safe[b - 1] and safe[b]:
+            s, d = edges[b], (1.0 - SINKING) * radius
+            for _ in range(8):  # Newton on: the point at s, d along its normal, lies above the edge
+                while under > 0 and s < node[under]:
+                    under -= 1
+                while under < cells - 1 and s >= node[under + 1]:
+                    under += 1
+                _h, h1, h2, _h3 = _quintic(coefficients, under, s - node[under])
+                length = np.sqrt(1.0 + h1 * h1)
+                s -= (s - d * h1 / length - edges[b]) / (1.0 - d * h2 / length**3)
+            touch[b] = s
+    return ceiling, safe, touch
 
 
 @inlined
@@ -223,28 +247,29 @@ def nearest(road, X, Y):
     if road.period > 0.0 and X > road.repeat_from + road.reach:
         shift = np.floor((X - road.repeat_from - road.reach) / road.period) * road.period
         X = X - shift
-    s = X
-    c = _cell(road, s)
-    h, h1, h2, h3 = _quintic(road.coefficients, c, s - road.node[c])
     b = _bin(road, X)
     if Y > road.ceiling[b]:
+        c = _cell(road, X)
+        h, _h1, _h2, _h3 = _quintic(road.coefficients, c, X - road.node[c])
         return X + shift, h, 0.0, 1.0, np.inf
-    below = Y < h
+    s, h = X, Y
     found = False
-    if road.safe[b] and not below:
+    if road.safe[b]:
+        part = (X - road.bin_start) * road.bins_per_metre - b
+        s = road.touch[b] + part * (road.touch[b + 1] - road.touch[b])
         for _ in range(12):
+            c = _cell(road, s)
+            h, h1, h2, h3 = _quintic(road.coefficients, c, s - road.node[c])
             e = h - Y
             g = s - X + e * h1
             g1 = 1.0 + h1 * h1 + e * h2
             g2 = 3.0 * h1 * h2 + e * h3
             step = -2.0 * g * g1 / (2.0 * g1 * g1 - g * g2)  # Halley
             s += step
-            if abs(step) < FINAL_STEP:
+            if abs(step) < road.final_step:
                 h += step * (h1 + step * (0.5 * h2 + step * h3 / 6.0))
-                found = True
+                found = Y > h  # below the road, D may have other minima
                 break
-            c = _cell(road, s)
-            h, h1, h2, h3 = _quintic(road.coefficients, c, s - road.node[c])
     if not found:
         s, h = _search_all_cells(road, X, Y)
     n_x, n_y = X - s, Y - h
@@ -254,12 +279,15 @@ def nearest(road, X, Y):
         _h, h1, _h2, _h3 = _quintic(road.coefficients, c, s - road.node[c])
         length = np.sqrt(1.0 + h1 * h1)
         return s + shift, h, -h1 / length, 1.0 / length, d
-    if below:
-        d = -d
+    if not found:
+        c = _cell(road, X)
+        h_X, _h1, _h2, _h3 = _quintic(road.coefficients, c, X - road.node[c])
+        if Y < h_X:
+            d = -d
     return s + shift, h, n_x / d, n_y / d, d
 
 
-@compiled
+@allocating
 def nearest_points(road, centres):
     """Nearest points (K, 2), normals (K, 2) and distances (K,) for wheel centres (K, 2)."""
     count = len(centres)

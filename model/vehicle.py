@@ -72,19 +72,10 @@ class System(NamedTuple):
         return slice(1 + 2 * self.n + self.m, 1 + 2 * (self.n + self.m))
 
 
-def design_positions(config: Config) -> np.ndarray:
-    """x of each road wheel's centre in the design pose, front first, m: (n,)."""
-    wheels = config.vehicle.road_wheels
-    if wheels.positions is not None:
-        return np.array(wheels.positions, dtype=float)
-    front = (wheels.count - 1) * wheels.spacing / 2 + wheels.offset
-    return front - np.arange(wheels.count) * wheels.spacing
-
-
 def build_system(config: Config) -> System:
     """The System that a configuration describes, with the preloads that hold the design pose at rest."""
     vehicle = config.vehicle
-    x = design_positions(config)
+    x = np.array(vehicle.road_wheels.x)
     n = len(x)
     m = n - 1 if vehicle.imaginary_wheels.enabled else 0
     r = vehicle.road_wheels.radius

@@ -13,6 +13,7 @@ from typing import Any
 import yaml
 
 DEPTH_LIMIT = 20  # of nested mappings and lists
+NODE_LIMIT = 2000  # keys, values and lists in all; a full configuration has some 150
 
 
 def parse_yaml(text: str) -> Any:
@@ -37,7 +38,7 @@ class _Loader(yaml.SafeLoader):
 
     def __init__(self, text: str) -> None:
         super().__init__(text)
-        self.depth = 0
+        self.depth = self.nodes = 0
 
     def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
         event = self.peek_event()
@@ -47,6 +48,9 @@ class _Loader(yaml.SafeLoader):
             raise _refused("tags are not used here", event)
         if self.depth >= DEPTH_LIMIT:
             raise _refused(f"nested deeper than {DEPTH_LIMIT} levels", event)
+        if self.nodes >= NODE_LIMIT:
+            raise _refused(f"more than {NODE_LIMIT} keys and values", event)
+        self.nodes += 1
         self.depth += 1
         node = super().compose_node(parent, index)
         self.depth -= 1

@@ -1,0 +1,89 @@
+"""Figures of the model: the right-hand side, the paper's run, and the same with dense equations and SciPy."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from statistics import median
+from time import perf_counter
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from model import load_config, simulate
+from model.compiled import compiled
+from model.equations import State, rates
+from model.integrate import error_scale
+from model.kernel import make_work, pack, unpack
+from model.kernel import rates as kernel_rates
+from model.road import build_road
+from model.simulate import starting_state
+from model.vehicle import build_system
+
+REPEATS = 15
+DENSE_TIME = 0.02  # s of simulated time with the dense equations, which are far too slow for the whole run
+
+
+def cores() -> int:
+    """Cores this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+def measure() -> dict[str, tuple[float, str]]:
+    """All figures: name -> (median, unit)."""
+    config = load_config("paper")
+    system, road = build_system(config), build_road(config)
+    y, _ = starting_state(system)
+    road_table, bodies = road.table, len(system.mass)
+    y[:bodies] += 20.0  # on the waves
+    y[bodies : 2 * bodies] += float(road.height(np.array(20.0)))
+    work, dy = make_work(system), np.zeros_like(y)
+
+    evaluations = 20_000
+    kernel = _seconds(lambda: _evaluate(system, road_table, y, dy, work, evaluations)) / evaluations
+    q, v, xi, int_e = unpack(y, bodies)
+    dense = _seconds(lambda: rates(system, road, 0.0, State(q, v, xi, int_e)), repeats=5)
+    run = _seconds(lambda: simulate(config))
+    duration = config.simulation.duration
+    rk45 = _seconds(lambda: simulate(config.replace({"simulation.integrator": "scipy-rk45"})), repeats=3)
+    slow = _seconds(lambda: _dense_run(system, road, y, config.simulation), repeats=1) * duration / DENSE_TIME
+    return {
+        "right-hand side, kernel": (kernel * 1e6, "µs"),
+        "right-hand side, dense equations": (dense * 1e6, "µs"),
+        "ratio of the two": (dense / kernel, "times"),
+        "paper's 10 s": (run * 1e3, "ms"),
+        "paper's 10 s, real-time factor": (duration / run, "times real time"),
+        "paper's 10 s, SciPy RK45 on the kernel": (rk45 * 1e3, "ms"),
+        f"paper's 10 s, SciPy RK45 on the dense equations (from {DENSE_TIME} s)": (slow * 1e3, "ms"),
+        "ratio to that": (slow / run, "times"),
+    }
+
+
+@compiled
+def _evaluate(system, road, y, dy, work, count):  # type: ignore[no-untyped-def]
+    for _ in range(count):
+        kernel_rates(system, road, 0.0, y, dy, work)
+        y[0] += 1e-15 * dy[-1]  # so that no evaluation can be left out
+
+
+def _dense_run(system, road, y, settings) -> None:  # type: ignore[no-untyped-def]
+    bodies = len(system.mass)
+
+    def right_hand_side(t: float, y: np.ndarray) -> np.ndarray:
+        q, v, xi, int_e = unpack(y, bodies)
+        found = rates(system, road, t, State(q, v, xi, int_e))
+        return pack(v, found.v_dot, found.xi_dot, found.int_e_dot)
+
+    scale = error_scale(system, settings.rtol, settings.atol)
+    solve_ivp(right_hand_side, (0.0, DENSE_TIME), y, method="RK45", rtol=settings.rtol, atol=scale)
+
+
+def _seconds(work: Callable[[], object], repeats: int = REPEATS) -> float:
+    """Median time of one call, s, after one call that does not count."""
+    work()
+    times = []
+    for _ in range(repeats):
+        began = perf_counter()
+        work()
+        times.append(perf_counter() - began)
+    return median(times)
