@@ -3,7 +3,7 @@ PYTHON := $(firstword $(shell command -v python3.11) $(shell command -v python3)
 BIN := .venv/bin
 AS_ROOT := $(if $(filter-out 0,$(shell id -u)),sudo,)
 
-.PHONY: setup run test check bench chromium clean
+.PHONY: setup run test check bench chromium readme pictures clean
 
 setup: .venv/ready
 
@@ -12,7 +12,7 @@ setup: .venv/ready
 	$(PYTHON) -m venv .venv || { $(AS_ROOT) apt-get update && $(AS_ROOT) apt-get install -y python3-venv && $(PYTHON) -m venv --clear .venv; }
 	$(BIN)/python -m pip install --quiet --requirement requirements.txt
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
-	$(BIN)/python -c "from model import load_config, simulate; simulate(load_config('paper'))"
+	$(BIN)/python -c "from model.simulate import warm_up; warm_up()"
 	touch $@
 
 run: setup
@@ -31,6 +31,12 @@ check: setup
 
 bench: setup
 	$(BIN)/python -m tests.benchmarks
+
+readme: setup
+	$(BIN)/python -m tests.readme
+
+pictures: setup chromium
+	$(BIN)/python -m tests.browser.pictures
 
 clean:
 	rm -rf .venv build *.egg-info

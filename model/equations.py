@@ -111,13 +111,13 @@ def contact(
 
 
 def constraints(system: System, q: np.ndarray, t: float) -> np.ndarray:
-    """C(q, t) of eq. (9)–(11), two rows a joint; prescribed drive adds R_x,chassis − v_ref t (x_0 = 0)."""
+    """C(q, t) of eq. (9)–(11), two rows a joint; prescribed drive adds R_x,chassis − (x_0 + v_ref t)."""
     rows = []
     for i, j, u_i, u_j in zip(system.joint_i, system.joint_j, system.u_i, system.u_j, strict=True):
         # Eq. (10)
         rows.append(q[i, :2] + rotation(q[i, 2]) @ u_i - q[j, :2] - rotation(q[j, 2]) @ u_j)
     if system.prescribed:
-        rows.append(np.array([q[0, 0] - system.v_ref * t]))
+        rows.append(np.array([q[0, 0] - system.x_0 - system.v_ref * t]))
     return np.concatenate(rows)
 
 

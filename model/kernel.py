@@ -290,7 +290,7 @@ def rates(system, road, t, y, dy, work):
 
     # The root: 3×3 for the chassis; with prescribed drive its a_x is given by eq. (14) and λ_45 balances that row
     if system.prescribed:
-        a0_x = -two_alpha * (v_x[0] - system.v_ref) - beta2 * (x[0] - system.v_ref * t)
+        a0_x = -two_alpha * (v_x[0] - system.v_ref) - beta2 * (x[0] - system.x_0 - system.v_ref * t)
     else:
         # Schur complement of the lower 2×2 block on the x row
         over = 1.0 / (M_yy * M_tt - M_yt * M_yt)
@@ -383,5 +383,5 @@ def constraint_residual(system, t, y):
         C_y = y[B + i] + s_i * u_i[0] + c_i * u_i[1] - y[B + j] - s_j * u_j[0] - c_j * u_j[1]
         worst = max(worst, abs(C_x), abs(C_y))
     if system.prescribed:
-        worst = max(worst, abs(y[0] - system.v_ref * t))
+        worst = max(worst, abs(y[0] - system.x_0 - system.v_ref * t))
     return worst

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from model.config import SineRoad
-from model.road import build_road
+from model.road import Road, build_road
 from model.trajectory import Trajectory, wheel_names
+from model.vehicle import System
 
 ARM_LIMIT = np.radians(45)  # turn of a road arm beyond which the model is doubtful
 SINKING_LIMIT = 0.1  # penetration, as a share of the wheel's radius
@@ -34,6 +36,68 @@ class Summary:
     imaginary_share: float  # mean over time of Σ load of imaginary wheels / Σ load of all
     drift: float  # m, by which joints were apart at worst
     real_time_factor: float  # simulated time / computing time
+
+
+class _Figure(NamedTuple):
+    """One figure of a comparison."""
+
+    label: str
+    unit: str
+    least: float  # a baseline smaller than this is as good as nothing: no change in percent
+
+
+ACCELERATION_RMS = _Figure("Vertical acceleration, rms", "m/s²", 1e-3)
+ACCELERATION_PEAK = _Figure("Vertical acceleration, peak", "m/s²", 1e-3)
+PITCH = _Figure("Pitch, peak to peak", "°", 1e-3)
+IMAGINARY_SHARE = _Figure("Load on imaginary wheels", "%", 1e-2)
+LOAD_PEAK = _Figure("Peak load", "kN", 1e-3)
+LOAD_RMS = _Figure("Load, rms", "kN", 1e-3)
+TRAVEL = _Figure("Suspension travel", "mm", 1e-2)
+AIR_TIME = _Figure("Time in the air", "s", 1e-9)
+HULL_FIGURES = (ACCELERATION_RMS, ACCELERATION_PEAK, PITCH, IMAGINARY_SHARE)
+WHEEL_FIGURES = (LOAD_PEAK, LOAD_RMS, TRAVEL, AIR_TIME)
+
+
+@dataclass(frozen=True)
+class Row:
+    """One figure of a run beside that of its baseline; a figure that a run does not have is None."""
+
+    figure: str
+    wheel: str  # R1…, I1…; empty for a figure of the whole vehicle
+    unit: str
+    now: float | None
+    baseline: float | None
+    change: float | None  # %, of the baseline; None where it means nothing
+
+    @property
+    def label(self) -> str:
+        return f"{self.figure}, {self.wheel}" if self.wheel else self.figure
+
+
+@dataclass(frozen=True)
+class WheelState:
+    """One wheel at one time: what its card shows. None where the word does not apply."""
+
+    name: str
+    time: float  # s
+    normal_load: float  # N
+    static_load: float  # N, at rest on flat ground
+    load_share: float | None  # of all wheels' load, 0…1; None with all wheels in the air
+    traction: float  # N, along the road, forward
+    penetration: float | None  # m; None in the air
+    slip_velocity: float | None  # m/s, ṗ of the rim over the ground, forward; None in the air
+    arm_angle: float  # °, of its arm in the hull, from the design pose; counter-clockwise
+    torque_share: float | None  # of the driving torque, 0…1; None where no torque drives (prescribed, all in the air)
+    drive_torque: float | None  # N m, of the drive on this wheel, positive drives forward
+
+
+class ContactMotion(NamedTuple):
+    """Where wheels meet the road and how they move there; leading dimensions as given."""
+
+    normal: np.ndarray  # (..., W, 2) n, unit vector from the ground to the wheel's centre; upright in the air
+    depth: np.ndarray  # (..., W) z, m; negative, and −∞ high up, in the air
+    sinking: np.ndarray  # (..., W) ż, m/s
+    slip: np.ndarray  # (..., W) ṗ of the rim along the road, m/s
 
 
 @dataclass(frozen=True)
@@ -88,11 +152,103 @@ def imaginary_share(trajectory: Trajectory) -> float:
     return float(np.mean(imaginary[grounded] / total[grounded])) if grounded.any() else 0.0
 
 
+def comparison(now: Trajectory, baseline: Trajectory | None) -> list[Row]:
+    """The ride figures of a run, and of another beside them: the hull's first, then each wheel's, front first.
+
+    A change of the time in the air is None when the runs last differently long.
+    """
+    present = _figures(now)
+    other = {} if baseline is None else _figures(baseline)
+    same_length = baseline is not None and now.t[-1] == baseline.t[-1]
+    rows = []
+    for figure, wheel in sorted({**present, **other}, key=_reading_order):
+        value, reference = present.get((figure, wheel)), other.get((figure, wheel))
+        change = None
+        if value is not None and reference is not None and reference >= figure.least:
+            change = 100 * (value / reference - 1)
+        if figure is AIR_TIME and not same_length:
+            change = None
+        rows.append(Row(figure.label, wheel, figure.unit, value, reference, change))
+    return rows
+
+
+def _reading_order(key: tuple[_Figure, str]) -> tuple[int, bool, int]:
+    figure, wheel = key
+    number = int(wheel[1:]) if wheel else 0
+    return (*HULL_FIGURES, *WHEEL_FIGURES).index(figure), wheel.startswith("I"), number
+
+
+def _figures(trajectory: Trajectory) -> dict[tuple[_Figure, str], float]:
+    """By figure and wheel, in the figures' units."""
+    of, n = summary(trajectory), trajectory.system.n
+    figures = {
+        (ACCELERATION_RMS, ""): of.acceleration_rms,
+        (ACCELERATION_PEAK, ""): of.acceleration_peak,
+        (PITCH, ""): float(np.degrees(of.pitch_high - of.pitch_low)),
+        (IMAGINARY_SHARE, ""): 100 * of.imaginary_share,
+    }
+    for figure, names, values in (
+        (LOAD_PEAK, of.names, of.load_max / 1e3),
+        (LOAD_RMS, of.names, np.sqrt(np.mean(trajectory.normal_load**2, axis=0)) / 1e3),
+        (TRAVEL, of.names[:n], 1e3 * (of.travel_up - of.travel_down)),
+        (AIR_TIME, of.names, of.air_time),
+    ):
+        figures |= {(figure, name): float(value) for name, value in zip(names, values, strict=True)}
+    return figures
+
+
+def wheel_state(trajectory: Trajectory, wheel: int, time: float) -> WheelState:
+    """A wheel, counted from 0 with road wheels first, at a time, s; between samples in proportion.
+
+    A time outside the run gives its start or its end.
+    """
+    system = trajectory.system
+    k = min(max(int(np.searchsorted(trajectory.t, time, side="right")) - 1, 0), max(len(trajectory.t) - 2, 0))
+    pair = slice(k, k + 2)
+
+    def at_time(samples: np.ndarray) -> np.ndarray:
+        moments = samples[pair].reshape(len(samples[pair]), -1).T
+        return np.array([np.interp(time, trajectory.t[pair], row) for row in moments]).reshape(samples.shape[1:])
+
+    q, load = at_time(trajectory.q), at_time(trajectory.normal_load)
+    touch = contact_motion(system, build_road(trajectory.config), q, at_time(trajectory.v))
+    touching = touch.depth[wheel] > 0
+    total = float(load.sum())
+    share = float(load[wheel]) / total if total > 0 else None
+    torque_share = None if system.prescribed else share
+    force = float(at_time(trajectory.drive_force[:, None])[0])
+    return WheelState(
+        name=wheel_names(system)[wheel],
+        time=float(np.clip(time, trajectory.t[0], trajectory.t[-1])),
+        normal_load=float(load[wheel]),
+        static_load=float(trajectory.static_load[wheel]),
+        load_share=share,
+        traction=float(at_time(trajectory.traction)[wheel]),
+        penetration=float(touch.depth[wheel]) if touching else None,
+        slip_velocity=float(touch.slip[wheel]) if touching else None,
+        arm_angle=float(np.degrees(q[system.spring_j[wheel], 2] - q[system.chassis, 2])),
+        torque_share=torque_share,
+        drive_torque=None if torque_share is None else torque_share * system.r * force,
+    )
+
+
+def contact_motion(system: System, road: Road, q: np.ndarray, v: np.ndarray) -> ContactMotion:
+    """Contact of all wheels in poses q and velocities v (..., B, 3)."""
+    centres, velocity = q[..., system.wheel, :2], v[..., system.wheel, :]
+    _, normal, distance = road.nearest(centres.reshape(-1, 2))
+    normal, distance = normal.reshape(centres.shape), distance.reshape(centres.shape[:-1])
+    n_x, n_y = normal[..., 0], normal[..., 1]
+    return ContactMotion(
+        normal=normal,
+        depth=system.r - distance,
+        sinking=-(velocity[..., 0] * n_x + velocity[..., 1] * n_y),
+        slip=velocity[..., 0] * n_y - velocity[..., 1] * n_x + system.r * velocity[..., 2],
+    )
+
+
 def penetration(trajectory: Trajectory) -> np.ndarray:
     """(N, W) m: how deep each wheel is in the ground; negative, and −∞ high up, in the air."""
-    centres = trajectory.q[:, trajectory.system.wheel, :2]
-    distances = build_road(trajectory.config).nearest(centres.reshape(-1, 2))[2]
-    return trajectory.system.r - distances.reshape(centres.shape[:2])
+    return contact_motion(trajectory.system, build_road(trajectory.config), trajectory.q, trajectory.v).depth
 
 
 def warnings(trajectory: Trajectory) -> list[RideWarning]:

@@ -27,7 +27,7 @@ Row = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # x, h, h′, h″ 
 class RoadTable(NamedTuple):
     """Cells c = 0…C−1 between nodes; h = Σ_k coefficients[c, k] u^k, u = x − node[c]. Bins are of equal width."""
 
-    node: np.ndarray  # (C + 1,) m; the last is infinite
+    node: np.ndarray  # (C + 1,) m; the last is NaN
     height: np.ndarray  # (C + 1,) h at the nodes, m
     coefficients: np.ndarray  # (C, 6)
     slack: np.ndarray  # (C,) how far D can dip below its values at the cell's ends, m²
@@ -94,7 +94,7 @@ def tabulate(rows: list[Row], period: float, radius: float) -> RoadTable:
     edges = np.linspace(node[0], node[-1], bins + 1)
     first_cell = np.clip(np.searchsorted(node, edges[:-1], side="right") - 1, 0, len(size) - 1)
     ceiling, safe, touch = _judge_bins(edges, node, height, coefficients, corner, radius)
-    node[-1] = np.inf  # the first and last cells are level and reach on without end
+    node[-1] = np.nan  # which no x exceeds: the first and last cells are level and reach on without end
     return RoadTable(
         node=node,
         height=height,
@@ -205,7 +205,11 @@ def _search_all_cells(road, X, Y):
         D_b = (node[c + 1] - X) ** 2 + (height[c + 1] - Y) ** 2
         if min(D_a, D_b) - road.slack[c] > best_D:
             continue
-        a, b = 0.0, min(node[c + 1] - node[c], 2 * road.reach)
+        a, b = 0.0, X + road.reach - node[c]
+        if c == 0:
+            a = min(a, X - road.reach - node[c])
+        if node[c + 1] - node[c] < b:
+            b = node[c + 1] - node[c]
         h, h1, h2, _ = _quintic(road.coefficients, c, a)
         g_a = node[c] + a - X + (h - Y) * h1
         h, h1, h2, _ = _quintic(road.coefficients, c, b)

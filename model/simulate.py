@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from time import perf_counter
 
 import numpy as np
@@ -30,6 +31,15 @@ def starting_state(system: System) -> tuple[np.ndarray, np.ndarray]:
     return pack(q, v, np.zeros(len(system.wheel)), 0.0), static_load
 
 
+@cache
+def warm_up(integrator: str = Config().simulation.integrator) -> None:
+    """Compile what an integrator needs, or load it compiled: once a process, half a minute the very first time."""
+    config = Config()
+    system = build_system(config)
+    y, _ = starting_state(system)
+    Integration(system, build_road(config).table, y, duration=1e-3, rate=1.0, integrator=integrator).advance(1e-3)
+
+
 def simulate(
     config: Config,
     on_progress: Callable[[float], None] | None = None,
@@ -41,6 +51,7 @@ def simulate(
     A run that diverges or is stopped is returned as far as it came, with a status and advice.
     Raises NoEquilibriumError when the vehicle has no rest pose to start from.
     """
+    warm_up(config.simulation.integrator)
     began = perf_counter()
     system, road = build_system(config), build_road(config)
     y, static_load = starting_state(system)

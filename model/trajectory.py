@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import zlib
 from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 from io import BytesIO, StringIO
@@ -76,21 +77,20 @@ class Trajectory:
     @classmethod
     def load(cls, path: str | Path) -> Trajectory:
         """Read a run from .npz. Raises OSError, ValueError (not such a file) or ConfigError (its configuration)."""
+        no_run = f"{path} is not a run saved by trackride run --out"
         try:
             with np.load(path, allow_pickle=False) as file:
                 arrays = {name: file[name] for name in file.files}
             counters = RunStatistics(**{f.name: arrays.pop(f.name).item() for f in fields(RunStatistics)})
             texts = {name: str(arrays.pop(name)) for name in _TEXTS}
             parts = {name: arrays[name] for name in _ARRAYS}
-        except (KeyError, TypeError, EOFError, BadZipFile) as error:
-            raise ValueError(f"{path} is not a run saved by trackride run --out: {error}") from error
-        return cls(
-            **parts,
-            config=parse_config(texts["config"], source=f"{path}: config"),
-            status=texts["status"],
-            advice=texts["advice"],
-            statistics=counters,
-        )
+        except (KeyError, TypeError, ValueError, EOFError, RuntimeError, BadZipFile, zlib.error) as error:
+            raise ValueError(no_run) from error
+        config = parse_config(texts["config"], source=f"{path}: config")
+        for name, shape in _shapes(build_system(config), parts["t"].size).items():
+            if parts[name].shape != shape or parts[name].dtype != float or not np.isfinite(parts[name]).all():
+                raise ValueError(f"{no_run}: {name} must hold {shape} finite numbers")
+        return cls(**parts, config=config, status=texts["status"], advice=texts["advice"], statistics=counters)
 
     def to_bytes(self, suffix: str) -> bytes:
         """The content of the file that `save` would write: ".npz" or ".csv"."""
@@ -126,6 +126,15 @@ class Trajectory:
 def wheel_names(system: System) -> list[str]:
     """R1…Rn for road wheels, I1…Im for imaginary wheels, front first: the order of all (…, W) arrays."""
     return [f"R{i + 1}" for i in range(system.n)] + [f"I{i + 1}" for i in range(system.m)]
+
+
+def _shapes(system: System, N: int) -> dict[str, tuple[int, ...]]:
+    """The shape of each array of a run of N samples."""
+    B, W, rows = len(system.mass), len(system.wheel), 2 * len(system.joint_i) + system.prescribed
+    shapes: dict[str, tuple[int, ...]] = {"multipliers": (N, rows), "static_load": (W,)}
+    shapes |= dict.fromkeys(("q", "v", "a"), (N, B, 3))
+    shapes |= dict.fromkeys(("normal_load", "traction", "tangential_displacement"), (N, W))
+    return shapes | dict.fromkeys(("t", "drive_force", "constraint_residual"), (N,))
 
 
 _TEXTS = ("config", "status", "advice")

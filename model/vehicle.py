@@ -43,6 +43,7 @@ class System(NamedTuple):
     c_t: float  # N s/m
     mu: float
     prescribed: bool  # drive by the rheonomic constraint instead of torques
+    x_0: float  # m, where the prescribed drive is at t = 0
     v_ref: float  # m/s
     K_p: float  # N s/m
     K_i: float  # N/m
@@ -156,6 +157,7 @@ def build_system(config: Config) -> System:
         c_t=contact.tangential_damping,
         mu=contact.friction,
         prescribed=drive.mode == "prescribed",
+        x_0=0.0,
         v_ref=drive.speed_kmh / 3.6,
         K_p=drive.proportional_gain,
         K_i=drive.integral_gain,

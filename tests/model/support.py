@@ -80,6 +80,8 @@ def random_state(system: System, rng: np.random.Generator) -> tuple[float, State
     v = rng.normal(0.0, 0.5, (B, 3))
     v[:, 0] += system.v_ref
     v[system.wheel, 2] -= system.v_ref / system.r
+    if rng.random() < 0.1:
+        v[:, 1] += 3.0  # faster out of the ground than its damping lets it push
     xi = rng.normal(0.0, 10.0 ** rng.uniform(-4, -1.5), W)
     return rng.uniform(0.0, 4.0), State(q, v, xi, rng.normal(0.0, 0.5))
 
@@ -91,7 +93,7 @@ def admissible_state(system: System, rng: np.random.Generator) -> State:
     q[:, 2] += rng.normal(0.0, 0.1, len(q))
     v[:, 2] = rng.normal(0.0, 0.5, len(q))
     q[0, :2] += rng.uniform([0.0, -0.03], [14.0, 0.02])
-    v[0, :2] = rng.normal(0.0, 0.5, 2) + [system.v_ref, 0.0]
+    v[0, :2] = rng.normal([system.v_ref, 0.0], 0.5)
     v[system.wheel, 2] -= system.v_ref / system.r
     for i, j, u_i, u_j in zip(system.joint_i, system.joint_j, system.u_i, system.u_j, strict=True):
         arm_i, arm_j = turned(u_i, q[i, 2]), turned(u_j, q[j, 2])

@@ -7,7 +7,7 @@ import pytest
 
 from model import load_config, simulate
 from model.config import Config
-from model.ride import imaginary_share, penetration, summary, suspension_travel, warnings
+from model.ride import Row, comparison, imaginary_share, penetration, summary, suspension_travel, warnings, wheel_state
 from model.road import build_road
 from model.trajectory import RunStatistics, Trajectory
 from model.vehicle import build_system
@@ -196,3 +196,136 @@ def test_the_papers_vehicle_at_30_km_per_h_is_warned_about():
         "Road arm 1 turned by -" in what
         for what in whats(simulate(load_config("paper").replace({"drive.speed_kmh": 30})))
     )
+
+
+def rows(now: Trajectory, baseline: Trajectory | None) -> dict[str, Row]:
+    found = {row.label: row for row in comparison(now, baseline)}
+    assert len(found) == len(comparison(now, baseline))
+    return found
+
+
+def test_a_comparison_gives_now_baseline_and_change_in_readers_units():
+    now, before = standing(), standing()
+    before.a[:, 0, 1], now.a[:, 0, 1] = [2, -2, 2, -2, 2], [1, -1, 1, -1, 1]
+    before.q[3, 0, 2], now.q[3, 0, 2] = np.radians(4), np.radians(-5)
+    before.normal_load[1:3, 1], now.normal_load[1:4, 1] = 0, 0
+    now.normal_load[0, 6] = 7500
+    third = now.system.road_wheels.start + 2
+    before.q[1, third, 1] += 0.02
+    now.q[1, third, 1] += 0.02
+    now.q[2, third, 1] -= 0.01
+    found = rows(now, before)
+
+    def row(label: str) -> tuple[str, float, float, float | None]:
+        return found[label].unit, found[label].now, found[label].baseline, found[label].change
+
+    assert row("Vertical acceleration, rms") == ("m/s²", 1, 2, -50)
+    assert row("Vertical acceleration, peak") == ("m/s²", 1, 2, -50)
+    assert row("Pitch, peak to peak") == ("°", pytest.approx(5), pytest.approx(4), pytest.approx(25))
+    assert row("Peak load, I1") == ("kN", 7.5, 5, pytest.approx(50))
+    assert row("Peak load, R1") == ("kN", 5, 5, 0)
+    assert row("Load, rms, R2") == (
+        "kN",
+        *(pytest.approx(5 * np.sqrt(k / 5)) for k in (2, 3)),
+        pytest.approx(-18.35, abs=0.01),
+    )
+    assert row("Time in the air, R2") == ("s", pytest.approx(0.03), pytest.approx(0.02), pytest.approx(50))
+    # R3: the hull's pitch of sample 3 moves its wheels too, so the figures are those of the summary
+    up, down = summary(now).travel_up[2], summary(now).travel_down[2]
+    assert row("Suspension travel, R3")[:2] == ("mm", pytest.approx(1000 * (up - down)))
+    share = found["Load on imaginary wheels"]
+    assert share.unit == "%"
+    assert share.now == pytest.approx(100 * imaginary_share(now))
+    assert share.change == pytest.approx(100 * (imaginary_share(now) / imaginary_share(before) - 1))
+
+
+def test_changes_that_mean_nothing_are_left_out():
+    quiet, shaken = standing(), standing()
+    quiet.a[:, 0, 1], shaken.a[:, 0, 1] = 1e-9, 1
+    shaken.normal_load[2, 0] = 0
+    found = rows(shaken, quiet)
+    assert found["Vertical acceleration, rms"].change is None
+    assert found["Time in the air, R1"].change is None  # before: never
+    assert found["Time in the air, R1"].now == pytest.approx(1 / RATE)
+    assert found["Suspension travel, R1"].change is None
+    longer = standing(samples=9)
+    longer.normal_load[2, 0] = 0
+    assert rows(longer, shaken)["Time in the air, R1"].change is None
+    assert rows(shaken, shaken)["Time in the air, R1"].change == 0
+
+
+def test_without_a_baseline_there_is_only_now():
+    assert all(
+        row.now is not None and row.baseline is None and row.change is None for row in comparison(standing(), None)
+    )
+
+
+def test_vehicles_with_different_wheels_are_compared_wheel_by_wheel():
+    four = standing(FLAT.replace({"vehicle.road_wheels.count": 4}))
+    bare = standing(FLAT.replace({"vehicle.imaginary_wheels.enabled": False}))
+    found = rows(four, bare)
+    peaks = [row.wheel for row in found.values() if row.figure == "Peak load"]
+    assert peaks == ["R1", "R2", "R3", "R4", "R5", "R6", "I1", "I2", "I3"]
+    assert (found["Peak load, R5"].now, found["Peak load, R5"].baseline) == (None, 5)
+    assert (found["Peak load, I3"].now, found["Peak load, I3"].baseline) == (5, None)
+    assert found["Peak load, I3"].change is None
+    assert "Suspension travel, I1" not in found
+    assert next(iter(found)) == "Vertical acceleration, rms"
+
+
+def test_the_state_of_a_wheel():
+    run = standing()
+    run.normal_load[2] = [1000, 2000, 3000, 4000, 5000, 6000, 100, 200, 300, 400, 1000]
+    run.traction[2, 2] = -50
+    run.drive_force[2] = 2300
+    run.q[2, 0, 2] = 0.05
+    run.q[2, run.system.road_arms.start + 2, 2] = 0.15
+    wheel = run.system.wheel[2]
+    run.q[2, wheel, 1] -= 0.01
+    run.v[2, wheel] = [4, 0, -10]
+    state = wheel_state(run, 2, 0.02)
+    assert (state.name, state.time) == ("R3", 0.02)
+    assert state.normal_load == pytest.approx(3000)
+    assert state.static_load == 5000
+    assert state.load_share == pytest.approx(3000 / 23000)
+    assert state.traction == pytest.approx(-50)
+    assert state.penetration == pytest.approx(0.01)
+    assert state.slip_velocity == pytest.approx(4 - 0.32 * 10)
+    assert state.arm_angle == pytest.approx(np.degrees(0.1))
+    assert state.torque_share == pytest.approx(3000 / 23000)
+    assert state.drive_torque == pytest.approx(0.32 * 2300 * 3000 / 23000)
+
+
+def test_between_samples_a_wheel_is_between_its_states_and_outside_at_an_end():
+    run = standing()
+    run.normal_load[:, 10] = [0, 100, 300, 500, 900]
+    assert wheel_state(run, 10, 0.015).normal_load == pytest.approx(200)
+    assert wheel_state(run, 10, 7).normal_load == 900
+    assert wheel_state(run, 10, 7).time == 0.04
+    assert wheel_state(run, 10, -1).normal_load == 0
+    assert wheel_state(standing(samples=1), 0, 0.5).normal_load == 5000
+
+
+def test_what_a_wheel_in_the_air_does_not_have():
+    run = standing()
+    run.q[:, run.system.wheel, 1] += 0.05
+    run.normal_load[:] = 0
+    state = wheel_state(run, 0, 0)
+    assert (state.penetration, state.slip_velocity) == (None, None)
+    assert (state.load_share, state.torque_share, state.drive_torque) == (None, None, None)
+
+
+def test_a_prescribed_drive_gives_no_torque_to_wheels():
+    state = wheel_state(standing(FLAT.replace({"drive.mode": "prescribed"})), 7, 0)
+    assert (state.torque_share, state.drive_torque) == (None, None)
+    assert state.load_share == pytest.approx(1 / 11)
+
+
+def test_a_rolling_wheel_of_the_papers_run_hardly_slips():
+    run = simulate(load_config("paper"))
+    states = [wheel_state(run, wheel, 4.3217) for wheel in range(11)]
+    assert sum(state.load_share for state in states) == pytest.approx(1)
+    assert all(abs(state.slip_velocity) < 0.05 for state in states if state.normal_load > 1000)
+    k = np.searchsorted(run.t, 4.3217)
+    low, high = np.sort(run.normal_load[[k - 1, k], 3])
+    assert low <= states[3].normal_load <= high

@@ -1,0 +1,277 @@
+"""The panel of parameters, generated from the parameter table: sliders for what-if, boxes in folders for the rest.
+
+What a box shows is in the table's friendlier unit (`shown_unit`); what a wish holds is as in a file.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping
+from typing import Any, Protocol
+
+import viser
+
+from app.callbacks import by_user
+from model.config import Config
+from model.parameters import GROUPS, NOTES, PARAMETER, PARAMETERS, Parameter, number_text
+from model.validation import Fault
+
+PRECISION = 4  # decimals that a box takes and shows
+FINEST_STEP = 10**-PRECISION  # parameters that need finer ones are typed as text: 1e-6
+IMAGINARY = "vehicle.imaginary_"
+IMAGINARY_SWITCH = "vehicle.imaginary_wheels.enabled"
+
+
+class Wishes(Protocol):
+    """What the panel asks of the session. Nothing of it blocks."""
+
+    def change(self, key: str, value: Any) -> None: ...
+
+    def load(self, preset: str) -> None: ...
+
+    def reset(self) -> None: ...
+
+    def fail(self, error: Exception) -> None: ...
+
+
+# What a box shows, and back
+
+
+def shown_label(parameter: Parameter) -> str:
+    """Name and unit: "Road stiffness, kN/m"."""
+    return f"{parameter.label}, {parameter.shown_unit}" if parameter.shown_unit else parameter.label
+
+
+def hint(parameter: Parameter) -> str:
+    """What it is, what happens when it grows, and where it stands in the paper."""
+    parts = [parameter.description]
+    if parameter.growth:
+        parts.append(f"When it grows: {parameter.growth[0].lower()}{parameter.growth[1:]}")
+    if _typed(parameter) and parameter.optional:
+        parts.append("Leave empty for the value computed from the others.")
+    if parameter.per_wheel:
+        parts.append("One value for all road wheels.")
+    facts = [f"Symbol {parameter.symbol}"] if parameter.symbol else []
+    facts += [f"unit {parameter.shown_unit}"] if parameter.shown_unit else []
+    facts += [f"from {parameter.source}"] if parameter.source.startswith(("Table", "section")) else []
+    return " ".join(parts) + (f" ({', '.join(facts)})" if facts else "")
+
+
+def allowed(parameter: Parameter) -> str:
+    """Range and unit as shown: "0.5 to 100 km/h"."""
+    if parameter.kind == "choice":
+        return "one of " + ", ".join(map(_words, parameter.choices))
+    low, high = (number_text(shown_number(parameter, bound)) for bound in (parameter.low, parameter.high))
+    return f"{low} to {high} {parameter.shown_unit}".strip()
+
+
+def shown_number(parameter: Parameter, value: float) -> float:
+    """A file's value in the shown unit, free of rounding noise."""
+    return float(f"{value * parameter.shown_factor:.10g}")
+
+
+def file_number(parameter: Parameter, shown: float) -> float | int:
+    """A shown value in the file's unit, free of rounding noise; whole where the parameter is."""
+    value = float(f"{shown / parameter.shown_factor:.10g}")
+    return int(value) if parameter.kind == "integer" and value.is_integer() else value
+
+
+def shown_text(parameter: Parameter, value: Any) -> str:
+    """A value, a list of values or nothing as text in the shown unit."""
+    if value is None:
+        return ""
+    if isinstance(value, tuple):
+        return ", ".join(number_text(shown_number(parameter, number)) for number in value)
+    return number_text(shown_number(parameter, value))
+
+
+def file_value(parameter: Parameter, text: str) -> Any:
+    """What a typed text means; the text itself where it means nothing, for the configuration to refuse."""
+    if not text.strip():
+        return None
+    try:
+        numbers = tuple(float(part) for part in text.strip(" ,;[]()").replace(";", ",").split(","))
+    except ValueError:
+        return text
+    values = tuple(file_number(parameter, number) for number in numbers)
+    return values if parameter.kind == "list" or len(values) > 1 else values[0]
+
+
+def _words(choice: str) -> str:
+    return choice.replace("_", " ")
+
+
+def _typed(parameter: Parameter) -> bool:
+    """Whether it is typed as text: it may be left out, is a list, or goes over many powers of ten."""
+    return parameter.optional or parameter.kind == "list" or 0 < parameter.step < FINEST_STEP
+
+
+def _decimals(value: float) -> int:
+    text = f"{value:.10f}".rstrip("0")
+    return len(text.partition(".")[2])
+
+
+class Control:
+    """Slider or box of one parameter. A parameter for each wheel has two: for one value, and for a list."""
+
+    def __init__(self, gui: viser.GuiApi, parameter: Parameter, value: Any, wishes: Wishes) -> None:
+        self.parameter = parameter
+        label, help_text = shown_label(parameter), hint(parameter)
+        self._list: Any = None
+        if _typed(parameter):
+            self._one: Any = gui.add_text(label, shown_text(parameter, value), hint=help_text)
+        elif parameter.kind == "choice":
+            self._one = gui.add_dropdown(
+                label, tuple(map(_words, parameter.choices)), initial_value=_words(value), hint=help_text
+            )
+        elif parameter.kind == "flag":
+            self._one = gui.add_checkbox(label, value, hint=help_text)
+        else:
+            first = shown_number(parameter, value[0] if isinstance(value, tuple) else value)
+            step = shown_number(parameter, parameter.step)
+            if parameter.what_if:
+                low, high = (shown_number(parameter, x) for x in (parameter.slider_low, parameter.slider_high))
+                self._one = gui.add_slider(
+                    label,
+                    float(min(low, first)),
+                    float(max(high, first)),
+                    float(step),
+                    float(first),
+                    hint=help_text,
+                )
+            else:
+                self._one = gui.add_number(label, float(first), step=float(step), hint=help_text)
+            self._one.precision = max(PRECISION, _decimals(first))
+        self._one.on_update(by_user(lambda event: wishes.change(parameter.key, self.value), wishes.fail))
+        if parameter.per_wheel:
+            self._list = gui.add_text(label, "", hint=f"{help_text} Here one for each road wheel, front first.")
+            self._list.on_update(by_user(lambda event: wishes.change(parameter.key, self.listed_value), wishes.fail))
+            self.show(value)
+
+    @property
+    def value(self) -> Any:
+        """What the slider or box says, as in a file."""
+        shown = self._one.value
+        if isinstance(shown, str) and self.parameter.kind == "choice":
+            return next((choice for choice in self.parameter.choices if _words(choice) == shown), shown)
+        if isinstance(shown, str):
+            return file_value(self.parameter, shown)
+        return shown if isinstance(shown, bool) else file_number(self.parameter, shown)
+
+    @property
+    def listed_value(self) -> Any:
+        """What the box for a list says."""
+        return None if self._list is None else file_value(self.parameter, self._list.value)
+
+    def was_moved_to_end(self, wished: Any) -> bool:
+        """Whether the slider stands at its end because the page moved it there from the value wished for, beyond it."""
+        if not self.parameter.what_if or not isinstance(wished, int | float):
+            return False
+        value, shown = self._one.value, shown_number(self.parameter, wished)
+        return value == self._one.max < shown or value == self._one.min > shown
+
+    def show(self, value: Any) -> None:
+        """Say this value, unless the control means it already."""
+        as_list = isinstance(value, tuple) and self._list is not None
+        if self._list is not None:
+            self._list.visible, self._one.visible = as_list, not as_list
+            if as_list and self.listed_value != value:
+                self._list.value = shown_text(self.parameter, value)
+        if as_list or self.value == value:
+            return
+        if _typed(self.parameter):
+            self._one.value = shown_text(self.parameter, value)
+        elif isinstance(value, str):
+            self._one.value = _words(value)
+        elif isinstance(value, bool):
+            self._one.value = value
+        else:
+            shown = shown_number(self.parameter, value)
+            self._one.precision = max(PRECISION, _decimals(shown))
+            self.widen(value)
+            self._one.value = shown
+
+    def widen(self, value: Any) -> None:
+        """Give the slider a range that has this value."""
+        if self.parameter.what_if and not isinstance(value, tuple):
+            shown = shown_number(self.parameter, value)
+            self._one.min, self._one.max = min(self._one.min, shown), max(self._one.max, shown)
+
+    def enable(self, applies: bool) -> None:
+        """Let it be used, or show that it means nothing at present: a slider turns grey, a box of a road goes."""
+        if self.parameter.roads and not self.parameter.what_if:
+            self._one.visible = applies
+        else:
+            self._one.disabled = not applies
+
+
+class ControlPanel:
+    """All controls of one browser tab, in the present container of `gui`."""
+
+    def __init__(
+        self, gui: viser.GuiApi, presets: Mapping[str, Config], preset: str, config: Config, wishes: Wishes
+    ) -> None:
+        """presets: name -> configuration; `preset` is shown as the chosen one, `config` in the controls."""
+        titles = _unique_titles(presets)
+        names = {title: name for name, title in titles.items()}
+        chosen = gui.add_dropdown(
+            "Preset",
+            tuple(names),
+            initial_value=titles[preset],
+            hint="A vehicle on a road to start from; all parameters follow",
+        )
+        chosen.on_update(by_user(lambda event: wishes.load(names[event.target.value]), wishes.fail))
+        self.status = gui.add_html("")
+        self._controls: dict[str, Control] = {}
+        for parameter in PARAMETERS:
+            if parameter.what_if:
+                self._controls[parameter.key] = Control(gui, parameter, _value(config, parameter), wishes)
+        reset = gui.add_button_group("Parameters", ("Reset",), hint="All parameters as in the preset (R)")
+        reset.on_click(by_user(lambda event: wishes.reset(), wishes.fail))
+        self.middle = gui.add_folder(None)  # for other controls, between the sliders and the folders
+        for group in GROUPS:
+            rest = [parameter for parameter in PARAMETERS if parameter.group == group and not parameter.what_if]
+            if group == NOTES or not rest:
+                continue
+            with gui.add_folder(group, expand_by_default=False):
+                for parameter in rest:
+                    self._controls[parameter.key] = Control(gui, parameter, _value(config, parameter), wishes)
+        self.show(config)
+
+    def __getitem__(self, key: str) -> Control:
+        return self._controls[key]
+
+    def show(self, config: Config, touched: Collection[str] = ()) -> None:
+        """Say what the configuration says, but leave controls alone that the user has touched and may still move."""
+        with_track = config.vehicle.imaginary_wheels.enabled
+        for key, control in self._controls.items():
+            applies = control.parameter.applies_to(config.road.type)
+            if applies:
+                (control.widen if key in touched else control.show)(config.value(key))
+            control.enable(applies and (with_track or not key.startswith(IMAGINARY) or key == IMAGINARY_SWITCH))
+
+
+def _value(config: Config, parameter: Parameter) -> Any:
+    return config.value(parameter.key) if parameter.applies_to(config.road.type) else parameter.default
+
+
+def _unique_titles(presets: Mapping[str, Config]) -> dict[str, str]:
+    """Preset's name -> its title, with the name where two have the same title."""
+    titles = [config.name for config in presets.values()]
+    return {
+        name: config.name if titles.count(config.name) == 1 else f"{config.name} ({name})"
+        for name, config in presets.items()
+    }
+
+
+def refusal(fault: Fault, given: Any) -> str:
+    """A fault in the words and units of the panel."""
+    parameter = PARAMETER.get(fault.path)
+    if parameter is None:
+        return f"{fault}."
+    if not isinstance(given, int | float) or not math.isfinite(given):
+        return f"{parameter.label}: {fault.value} is not allowed. Give {allowed(parameter)}."
+    if parameter.low <= given <= parameter.high:
+        return f"{parameter.label}: {fault.message}."
+    what = f"{shown_text(parameter, given)} {parameter.shown_unit}".strip()
+    return f"{parameter.label}: {what} is not allowed. Give {allowed(parameter)}."

@@ -1,0 +1,189 @@
+"""From the latest wish to a finished run: one thread, a slot for the wish, a slot for each kind of outcome, no queue.
+
+A newer wish replaces an older one that nobody has begun, and stops a run that has long to go. Outcomes come in the
+order of their wishes; one that nobody has taken is replaced by the next of its kind.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from time import monotonic
+from typing import Any, Protocol
+
+from model.config import Config
+from model.equilibrium import NoEquilibriumError
+from model.parameters import PARAMETERS
+from model.trajectory import Trajectory
+from model.validation import EXCLUSIVE, ConfigError, Fault
+
+NEARLY_DONE = 0.5  # part of a run after which a newer wish lets it finish
+PATIENCE = 0.25  # s without a new curve after which a run is let finish, so that a long drag shows something…
+LONGEST = 1.0  # s … unless it takes longer than this
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What is to be run: a configuration, and what the user changed in it (dotted key -> value as in a file)."""
+
+    base: Config
+    changes: Mapping[str, Any] = field(default_factory=dict)
+    number: int = 0
+
+    def changed(self, key: str, value: Any) -> Wish:
+        """The same with one more change; what contradicts it goes."""
+        rivals = {key} | _rivals(key)
+        if key == "road.type":
+            rivals |= {parameter.key for parameter in PARAMETERS if not parameter.applies_to(str(value))}
+        changes = {other: given for other, given in self.changes.items() if other not in rivals}
+        return replace(self, changes={**changes, key: value})
+
+    def config(self) -> Config:
+        """The configuration wished for. Raises ConfigError."""
+        return self.base.replace(dict(self.changes)) if self.changes else self.base
+
+
+def _rivals(key: str) -> set[str]:
+    """Keys that say the same as this one, so that only one of them can be given."""
+    found: set[str] = set()
+    for one, others in EXCLUSIVE:
+        if key == one:
+            found |= set(others)
+        elif key in others:
+            found.add(one)
+    return found
+
+
+@dataclass(frozen=True)
+class Finished:
+    wish: Wish
+    trajectory: Trajectory
+
+
+@dataclass(frozen=True)
+class Refused:
+    """The wish is no valid configuration."""
+
+    wish: Wish
+    faults: tuple[Fault, ...]
+
+
+@dataclass(frozen=True)
+class Failed:
+    """The run could not be made, for a reason that the message gives in plain words."""
+
+    wish: Wish
+    message: str
+
+
+Outcome = Finished | Refused | Failed
+
+
+class Simulate(Protocol):
+    """model.simulate, or a stand-in."""
+
+    def __call__(
+        self, config: Config, *, on_progress: Callable[[float], None], should_stop: Callable[[], bool]
+    ) -> Trajectory: ...
+
+
+class Runner:
+    """Runs the latest wish. `on_outcome` is called, on the runner's thread, when an outcome can be taken."""
+
+    def __init__(
+        self,
+        first: Wish,
+        simulate: Simulate,
+        on_outcome: Callable[[], None],
+        on_error: Callable[[Exception], None],
+    ) -> None:
+        self._simulate, self._on_outcome, self._on_error = simulate, on_outcome, on_error
+        self._condition = threading.Condition()
+        self._wish = replace(first, number=1)
+        self._begun = 0  # number of the wish that was begun last
+        self._outcomes: dict[type, Outcome] = {}  # a refusal does not hide the run before it
+        self._progress = 0.0  # of the run under way, 0…1
+        self._began_at: float | None = None  # monotonic s; None: no run under way
+        self._shown_at = 0.0  # when the last run finished
+        self._closed = False
+        self._thread = threading.Thread(target=self._work, name="trackride-runner", daemon=True)
+        self._thread.start()
+
+    def change(self, update: Callable[[Wish], Wish]) -> None:
+        """Wish for update(latest wish). It runs under the lock: quick and without side effects."""
+        with self._condition:
+            self._wish = replace(update(self._wish), number=self._wish.number + 1)
+            self._condition.notify()
+
+    def withdraw(self, refused: Wish, instead: Wish) -> bool:
+        """Go back to an older wish, which is not run again, unless there is a newer one than the refused."""
+        with self._condition:
+            if self._wish.number != refused.number:
+                return False
+            self._wish = replace(instead, number=refused.number)
+            return True
+
+    @property
+    def latest(self) -> Wish:
+        return self._wish
+
+    def take(self) -> list[Outcome]:
+        """The newest outcome of each kind, once, in the order of their wishes."""
+        with self._condition:
+            outcomes, self._outcomes = self._outcomes, {}
+        return sorted(outcomes.values(), key=lambda outcome: outcome.wish.number)
+
+    def under_way(self) -> tuple[int, float, float] | None:
+        """Number, part done (0…1) and seconds so far of the run under way, if there is one."""
+        began = self._began_at
+        return None if began is None else (self._begun, self._progress, monotonic() - began)
+
+    def close(self) -> None:
+        """Stop the run and end the thread."""
+        with self._condition:
+            self._closed = True
+            self._condition.notify()
+        self._thread.join()
+
+    def _work(self) -> None:
+        while True:
+            with self._condition:
+                self._condition.wait_for(lambda: self._closed or self._wish.number > self._begun)
+                if self._closed:
+                    return
+                wish = self._wish
+                self._begun, self._progress, self._began_at = wish.number, 0.0, monotonic()
+            outcome = self._outcome_of(wish)
+            self._began_at = None
+            if outcome is not None:
+                self._shown_at = monotonic()
+                with self._condition:
+                    self._outcomes[type(outcome)] = outcome
+                self._on_outcome()
+
+    def _outcome_of(self, wish: Wish) -> Outcome | None:
+        """None when the run was stopped for a newer wish, or at closing."""
+        try:
+            config = wish.config()
+            run = self._simulate(config, on_progress=self._note_progress, should_stop=self._should_stop)
+        except ConfigError as error:
+            return Refused(wish, error.faults)
+        except NoEquilibriumError as error:
+            return Failed(wish, str(error))
+        except Exception as error:
+            self._on_error(error)
+            return None
+        return None if run.status == "cancelled" else Finished(wish, run)
+
+    def _note_progress(self, part: float) -> None:
+        self._progress = part
+
+    def _should_stop(self) -> bool:
+        if self._closed:
+            return True
+        if self._wish.number == self._begun or self._progress >= NEARLY_DONE:
+            return False
+        now = monotonic()
+        overdue = now - self._shown_at > PATIENCE
+        return not overdue or now - (self._began_at or now) > LONGEST

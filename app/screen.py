@@ -1,0 +1,69 @@
+"""How the panels share the page, whose size viser does not tell: it is read off the 3-D view's size."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+LEFT = 345  # px, width of the control panel
+RIGHT = 470  # px, width of the plots at least
+WIDEST = 760  # px, width of the plots at most
+SEAMS = 8  # px that viser puts between docked panels and the view
+PLAYER = 560  # px, width of the player at most
+PLOTS_HEAD = 82  # px above the plots in their panel
+CARD = 66  # px that one plot takes beyond its chart: title, legend, margins
+SCALES = (0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.25, 2.5, 3.0, 3.5, 4.0)  # screen pixels for each px
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Sizes, px."""
+
+    right: int  # width of the plots' panel
+    player_x: int  # left edge of the player, from the view's
+    player_width: int
+    page_height: int
+
+
+class Screen:
+    """The page behind a view that is at first as wide as the page, and narrower once both panels are docked."""
+
+    def __init__(self, width: int, height: int) -> None:
+        """Size of the view before docking, screen pixels."""
+        self._full_width = width
+        self._seen = (width, height)
+        self._scale: float | None = None  # screen pixels for each px, once it is known
+        self._right = RIGHT
+
+    def first(self) -> Layout:
+        """Sizes to begin with, as if a screen pixel were a px."""
+        width, height = self._seen
+        return _layout(width - LEFT - self._right - SEAMS, height, self._right)
+
+    def update(self, width: int, height: int) -> Layout | None:
+        """New sizes when the view's size, in screen pixels, has changed with the page or the panels; else None."""
+        before, self._seen = self._seen, (width, height)
+        if self._seen == before or not width or not height:
+            return None
+        if self._scale is None:
+            measured = (self._full_width - width) / (LEFT + RIGHT + SEAMS)
+            nearest = min(SCALES, key=lambda scale: abs(scale - measured))
+            if abs(nearest - measured) > 0.02 * nearest:
+                return None  # not yet docked
+            self._scale = nearest
+            self._right = int(min(max(RIGHT, 0.3 * self._full_width / nearest), WIDEST))
+            wider = self._right - RIGHT  # which the plots will take from the view
+            return _layout(width / nearest - wider, height / nearest, self._right)
+        if abs(width * before[1] / (height * before[0]) - 1) < 0.005:
+            self._scale *= height / before[1]  # viser draws coarser or finer now; the page is as it was
+            return None
+        return _layout(width / self._scale, height / self._scale, self._right)
+
+
+def _layout(view_width: float, page_height: float, right: int) -> Layout:
+    player = int(min(max(view_width - 24, 300), PLAYER))
+    return Layout(right, max(int((view_width - player) / 2), 0), player, int(page_height))
+
+
+def chart_height(page_height: int, plots: int) -> int:
+    """Height of each of so many charts that together fill a page of this height, px."""
+    return int(min(max((page_height - PLOTS_HEAD) / max(plots, 1) - CARD, 130), 460))

@@ -1,0 +1,165 @@
+"""The hull: an armoured carrier of the BMP class, stretched to the wheels it stands on.
+
+In the design pose: x forward, y to the left, z above flat ground; m, at the size of the paper's vehicle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from assets.layout import Layout
+from assets.running_gear import DARK_STEEL, RUBBER, STEEL
+from assets.solids import Part, Rgba, both_sides, box, convex, lathe, lengthwise, upright
+
+PAINT: Rgba = (118, 130, 98, 255)
+PAINT_LIGHT: Rgba = (132, 144, 112, 255)
+PAINT_DARK: Rgba = (86, 96, 74, 255)
+FLOOR: Rgba = (66, 74, 60, 255)
+GLASS: Rgba = (46, 60, 72, 255)
+LAMP: Rgba = (250, 240, 204, 255)
+TAIL_LAMP: Rgba = (176, 54, 44, 255)
+ROOF, ROOF_HALF_WIDTH = 1.56, 1.20
+
+Point = tuple[float, float, float]
+
+
+def hull(layout: Layout) -> list[Part]:
+    """Everything that is fixed to the chassis, about the point of the ground under its centre of mass."""
+    unit = layout.at_scale_one()
+    parts = [*_body(unit), *_fenders(unit), *_turret(unit), *_fittings(unit), *_rollers(unit)]
+    return [part.scaled(layout.scale) for part in parts]
+
+
+def _across(outline: Sequence[Point]) -> np.ndarray:
+    """Corners on both sides from (x, half width, z)."""
+    return np.array([(x, sign * y, z) for x, y, z in outline for sign in (-1, 1)])
+
+
+def _body(layout: Layout) -> list[Part]:
+    nose, tail, floor, deck = layout.sprocket.x, layout.idler.x, layout.belly, layout.fender + 0.02
+    w, wide, narrow = layout.hull_half_width, layout.half_width - 0.08, ROOF_HALF_WIDTH
+    tip, chin = (nose + 0.46, w, deck + 0.02), (nose + 0.02, w, floor + 0.16)
+    lower = [
+        chin,
+        (nose - 0.28, w, floor),
+        (tail - 0.02, w, floor),
+        (tail - 0.26, w, deck),
+        (nose + 0.34, w, deck),
+    ]
+    upper = [
+        tip,
+        (nose + 0.30, wide, deck),
+        (nose + 0.24, wide - 0.05, deck + 0.10),
+        (nose - 1.30, narrow, ROOF),
+        (tail - 0.24, narrow, ROOF),
+        (tail - 0.36, wide, deck),
+    ]
+    return [
+        convex(_across(lower), FLOOR, chamfer=0.02),
+        convex(_across(upper), PAINT, chamfer=0.03),
+        convex(_across([tip, chin, (nose - 0.2, w, deck)]), PAINT_DARK, chamfer=0.02),
+    ]
+
+
+def _fenders(layout: Layout) -> list[Part]:
+    """Plates over the tracks with a skirt outside and mudguards at both ends."""
+    inner, outer, z = layout.hull_half_width - 0.05, layout.half_width, layout.fender
+    front, rear = layout.sprocket.x + 0.22, layout.idler.x - 0.26
+
+    def plate(near: tuple[float, float], far: tuple[float, float]) -> Part:
+        corners = [(x, y, top - dz) for x, top in (near, far) for y in (inner, outer) for dz in (0.0, 0.025)]
+        return convex(corners, PAINT_DARK)
+
+    skirt = box(((front + rear) / 2, outer - 0.01, z - 0.03), (front - rear, 0.02, 0.06), PAINT)
+    return both_sides(
+        [
+            plate((front, z), (rear, z)),
+            plate((front, z), (front + 0.20, z - 0.16)),
+            plate((rear, z), (rear - 0.12, z - 0.12)),
+            skirt,
+        ]
+    )
+
+
+def _turret(layout: Layout) -> list[Part]:
+    """A low conical turret with a hatch, a sight and a light gun."""
+    ring = lathe([(0.86, 0.0), (0.86, 0.05), (0.80, 0.05)], PAINT_DARK, 32)
+    cone = lathe([(0.82, 0.04), (0.54, 0.36), (0.50, 0.385), (0.0, 0.40)], PAINT, 48)
+    hatch = lathe([(0.24, 0.38), (0.24, 0.43), (0.20, 0.45), (0.0, 0.46)], PAINT_LIGHT, 20)
+    gun = [(0.0, 0.7), (0.055, 0.7), (0.055, 1.35), (0.034, 1.37), (0.034, 2.30), (0.048, 2.30), (0.048, 2.52)]
+    mantlet = [(0.50, y, z) for y in (-0.22, 0.22) for z in (0.10, 0.34)]
+    mantlet += [(0.84, y, z) for y in (-0.12, 0.12) for z in (0.14, 0.28)]
+    parts = [
+        upright(ring),
+        upright(cone),
+        upright(hatch).moved(-0.12, -0.16),
+        convex(mantlet, PAINT_DARK, chamfer=0.02),
+        lengthwise(lathe([*gun, (0.0, 2.52)], DARK_STEEL, 12)).pitched(0.03).moved(z=0.20),
+        box((0.30, 0.30, 0.40), (0.16, 0.14, 0.14), PAINT_DARK),
+        box((0.385, 0.30, 0.41), (0.01, 0.10, 0.07), GLASS),
+        box((-0.62, 0.34, 0.62), (0.014, 0.014, 0.9), DARK_STEEL),
+        box((-0.62, 0.34, 0.18), (0.06, 0.06, 0.16), PAINT_DARK),
+    ]
+    return [part.moved(layout.middle - 0.18, z=ROOF - 0.005) for part in parts]
+
+
+def _fittings(layout: Layout) -> list[Part]:
+    """Lamps, hatches, doors, vision blocks, splash boards, stowage, exhaust and tow hooks."""
+    nose, tail, middle, deck = layout.sprocket.x, layout.idler.x, layout.middle, layout.fender + 0.02
+    foot, top = np.array([nose + 0.24, deck + 0.10]), np.array([nose - 1.30, ROOF])
+    slope = float(np.arctan2(*(top - foot)[::-1])) - np.pi
+
+    def on_glacis(along: float, y: float, size: Point, colour: Rgba) -> Part:
+        """A block lying on the glacis, `along` of the way from its foot to the roof."""
+        x, z = foot + along * (top - foot)
+        return box((0.0, 0.0, 0.0), size, colour).pitched(slope).moved(x, y, z)
+
+    rise = np.array([ROOF_HALF_WIDTH - layout.half_width + 0.08, ROOF - deck])
+    lean = float(np.arctan2(*rise[::-1]))
+
+    def on_side(x: float, up: float, size: Point, colour: Rgba) -> Part:
+        """A block lying on the left side, `up` of the way from the fender to the roof."""
+        y, z = np.array([layout.half_width - 0.08, deck]) + up * rise
+        return box((0.0, 0.0, 0.0), size, colour).rolled(lean - np.pi).moved(x, y, z)
+
+    def on_roof(x: float, y: float) -> Part:
+        return box((x, y, ROOF + 0.012), (0.52, 0.52, 0.04), PAINT_LIGHT)
+
+    lamp = lengthwise(lathe([(0.0, -0.06), (0.075, -0.06), (0.075, 0.06)], PAINT_DARK, 14))
+    lens = lengthwise(lathe([(0.075, 0.055), (0.05, 0.075), (0.0, 0.08)], LAMP, 14))
+    pairs = [
+        lamp.moved(nose + 0.12, 1.06, deck + 0.20),
+        lens.moved(nose + 0.12, 1.06, deck + 0.20),
+        on_roof(tail + 0.25, 0.42),
+        box((tail - 0.31, 0.34, deck + 0.26), (0.06, 0.62, 0.46), PAINT_LIGHT),
+        box((tail - 0.37, 1.25, deck + 0.10), (0.05, 0.14, 0.07), TAIL_LAMP),
+        box((middle - 0.90, 1.44, deck + 0.09), (0.9, 0.14, 0.18), PAINT_LIGHT),
+        box((middle + 0.35, 1.44, deck + 0.07), (1.1, 0.10, 0.12), PAINT_DARK),
+        *(on_side(middle - 1.45 + 0.62 * k, 0.68, (0.15, 0.13, 0.05), PAINT_DARK) for k in range(4)),
+        *(on_side(middle - 1.45 + 0.62 * k, 0.68, (0.07, 0.05, 0.07), GLASS) for k in range(4)),
+        box((nose + 0.30, 0.55, layout.belly + 0.34), (0.16, 0.07, 0.10), DARK_STEEL),
+    ]
+    return [
+        on_glacis(0.30, 0.0, (0.03, 2.0, 0.16), PAINT_DARK),
+        on_glacis(0.52, 0.0, (0.03, 2.0, 0.07), PAINT_DARK),
+        on_glacis(0.72, 0.55, (0.50, 0.56, 0.05), PAINT_LIGHT),
+        on_glacis(0.95, 0.55, (0.10, 0.44, 0.12), GLASS),
+        on_glacis(0.70, -0.55, (0.50, 0.70, 0.04), PAINT_LIGHT),
+        box((nose - 1.0, -1.34, deck + 0.30), (0.5, 0.06, 0.16), RUBBER),
+        *both_sides(pairs),
+    ]
+
+
+def _rollers(layout: Layout) -> list[Part]:
+    """Return rollers under the upper run, and the axles of sprocket and idler."""
+    parts = []
+    for roller in layout.rollers:
+        R = roller.radius - layout.shoe_thickness
+        wheel = lathe([(0.0, -0.10), (R, -0.10), (R, 0.10), (0.4 * R, 0.10), (0.0, 0.11)], RUBBER, 16)
+        parts.append(wheel.moved(roller.x, layout.track - 0.04, roller.height))
+    for end in (layout.sprocket, layout.idler):
+        axle = lathe([(0.35 * end.radius, -0.3), (0.3 * end.radius, 0.0)], STEEL, 14)
+        parts.append(axle.moved(end.x, layout.track, end.height))
+    return both_sides(parts)

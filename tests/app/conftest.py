@@ -1,0 +1,253 @@
+"""Stand-ins for what the explorer meets: a browser tab that speaks viser's protocol, a 3-D view, runs made by hand."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import msgspec
+import numpy as np
+import pytest
+import viser
+import zstandard
+from websockets.sync.client import connect
+
+from app.server import Explorer
+from model.config import Config, load_config
+from model.trajectory import RunStatistics, Trajectory
+from model.vehicle import build_system
+
+PATIENCE = 10.0  # s that a test waits for something to happen
+
+
+def wait_for(condition: Callable[[], Any], what: str = "it") -> Any:
+    """The first true answer of the condition."""
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        answer = condition()
+        if answer:
+            return answer
+        time.sleep(0.005)
+    raise AssertionError(f"waited {PATIENCE:g} s for {what}")
+
+
+def trackride_threads() -> set[str]:
+    """Names of the sessions' threads that are alive."""
+    return {thread.name for thread in threading.enumerate() if thread.name.startswith("trackride")}
+
+
+def make_run(
+    config: Config | None = None, samples: int = 201, status: str = "complete", advice: str = ""
+) -> Trajectory:
+    """A run at 100 samples a second whose loads and accelerations are as large as the speed (km/h) says."""
+    config = config or load_config("paper")
+    system = build_system(config)
+    bodies, wheels = len(system.mass), len(system.wheel)
+    t = np.arange(samples) / 100
+    q = np.tile(system.q_design, (samples, 1, 1))
+    wave = np.sin(2 * np.pi * t)[:, None]
+    return Trajectory(
+        t=t,
+        q=q,
+        v=np.zeros_like(q),
+        a=np.tile(wave[..., None], (1, bodies, 3)) * config.drive.speed_kmh,
+        normal_load=1e3 * config.drive.speed_kmh + 100 * wave * np.arange(1, wheels + 1),
+        traction=np.zeros((samples, wheels)),
+        tangential_displacement=np.zeros((samples, wheels)),
+        drive_force=np.zeros(samples),
+        multipliers=np.zeros((samples, 2 * len(system.joint_i))),
+        constraint_residual=np.zeros(samples),
+        static_load=np.zeros(wheels),
+        config=config,
+        status=status,
+        advice=advice,
+        statistics=RunStatistics(100, 1, 600, 1e-4, 0.05),
+    )
+
+
+def simulate_at_once(
+    config: Config, *, on_progress: Callable[[float], None], should_stop: Callable[[], bool]
+) -> Trajectory:
+    on_progress(1.0)
+    return make_run(config)
+
+
+class FakeScene:
+    """A 3-D view that remembers what it was told."""
+
+    def __init__(self, client: viser.ClientHandle, dark: bool) -> None:
+        self.client, self.dark = client, dark
+        self.follow = self.show_arrows = self.show_labels = True
+        self.runs: list[Trajectory] = []
+        self.times: list[float] = []
+        self.views: list[str] = []
+        self.threads: set[str] = set()
+
+    def show(self, trajectory: Trajectory) -> None:
+        self.runs.append(trajectory)
+        self.threads.add(threading.current_thread().name)
+
+    def draw(self, time: float) -> None:
+        self.times.append(time)
+        self.threads.add(threading.current_thread().name)
+
+    def set_view(self, name: str) -> None:
+        self.views.append(name)
+
+    def set_dark(self, dark: bool) -> None:
+        self.dark = dark
+
+
+class Tab:
+    """A browser tab as far as the server can tell: it keeps what it is sent, and can use any control."""
+
+    def __init__(self, explorer: Explorer, width: int = 1600, height: int = 900) -> None:
+        self._socket = connect(
+            explorer.address.replace("http", "ws"),
+            subprotocols=[f"viser-v{viser.__version__}"],  # type: ignore[list-item]
+            compression=None,
+            max_size=None,
+        )
+        self.widgets: dict[str, dict[str, Any]] = {}  # uuid -> type, value and props
+        self.notifications: list[dict[str, Any]] = []
+        self.messages: list[dict[str, Any]] = []
+        self._thread = threading.Thread(target=self._listen, daemon=True)
+        self._thread.start()
+        self.send(
+            "ViewerCameraMessage",
+            wxyz=(1, 0, 0, 0),
+            position=(0, -9, 1),
+            fov=0.5,
+            near=0.01,
+            far=1000,
+            image_height=height,
+            image_width=width,
+            look_at=(0, 0, 0),
+            up_direction=(0, 0, 1),
+        )
+
+    def send(self, kind: str, **content: Any) -> None:
+        self._socket.send(msgspec.msgpack.encode({"type": kind, **content}))
+
+    def use(self, label: str, value: Any) -> None:
+        """Set a control as the page does."""
+        self.send("GuiUpdateMessage", uuid=self.find(label), updates={"value": value})
+
+    def press(self, command: str) -> None:
+        """Run a command of the palette."""
+        uuid = wait_for(
+            lambda: next(
+                (
+                    message["uuid"]
+                    for message in tuple(self.messages)
+                    if message["type"] == "RegisterCommandMessage" and message["props"]["label"] == command
+                ),
+                None,
+            ),
+            command,
+        )
+        self.send("CommandTriggerMessage", uuid=uuid)
+
+    def find(self, label: str) -> str:
+        """The uuid of the control with this label."""
+        return wait_for(
+            lambda: next(
+                (
+                    uuid
+                    for uuid, widget in tuple(self.widgets.items())
+                    if widget["props"].get("label") == label and widget["props"].get("visible", True)
+                ),
+                None,
+            ),
+            f"a control called {label}",
+        )
+
+    def widget(self, label: str) -> dict[str, Any]:
+        return self.widgets[self.find(label)]
+
+    def charts(self) -> list[dict[str, Any]]:
+        """Props of the plots, from top to bottom; their data as arrays."""
+        charts = [w["props"] for w in tuple(self.widgets.values()) if w["type"] == "GuiUplotMessage"]
+        return sorted(charts, key=lambda props: props["order"])
+
+    @property
+    def status(self) -> str:
+        """HTML of the line that tells the run."""
+        texts = [w["props"]["content"] for w in tuple(self.widgets.values()) if w["type"] == "GuiHtmlMessage"]
+        return next((text for text in texts if "trackride-status" in text and "<style" not in text), "")
+
+    def shows_run(self, number: int) -> bool:
+        return f"<b>Run {number}</b>" in self.status and " in " in self.status
+
+    def close(self) -> None:
+        self._socket.close()
+        self._thread.join()
+
+    def _listen(self) -> None:
+        unpack = zstandard.ZstdDecompressor()
+        for data in self._socket:
+            assert isinstance(data, bytes)
+            size, packed = (int.from_bytes(data[i : i + 8], "little") for i in (0, 8))
+            window = msgspec.msgpack.decode(unpack.decompress(data[16 : 16 + packed], max_output_size=size))
+            offset, arrays = 16 + packed, []
+            for length in window["binaryBufferLengths"]:
+                offset += -offset % 8
+                arrays.append(data[offset : offset + length])
+                offset += length
+            for message in window["messages"]:
+                self._receive(_with_arrays(message, arrays))
+
+    def _receive(self, message: dict[str, Any]) -> None:
+        self.messages.append(message)
+        kind = message["type"]
+        if kind == "GuiUpdateMessage" and message["uuid"] in self.widgets:
+            widget = self.widgets[message["uuid"]]
+            for name, value in message["updates"].items():
+                (widget if name == "value" else widget["props"])[name] = value
+        elif kind == "GuiRemoveMessage":
+            self.widgets.pop(message["uuid"], None)
+        elif kind.startswith("Gui") and "props" in message:
+            self.widgets[message["uuid"]] = message
+        elif kind == "NotificationShowMessage":
+            self.notifications.append(message["props"])
+
+
+def _with_arrays(value: Any, arrays: list[bytes]) -> Any:
+    if isinstance(value, dict):
+        if "__binary_index" in value:
+            return np.frombuffer(arrays[value["__binary_index"]], value["dtype"])
+        return {key: _with_arrays(inner, arrays) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [_with_arrays(inner, arrays) for inner in value]
+    return value
+
+
+@pytest.fixture
+def explore() -> Iterator[Callable[..., Explorer]]:
+    """Starts explorers on the paper's vehicle and ends them, with the arguments of Session to change."""
+    started: list[Explorer] = []
+
+    def start(config: Config | None = None, preset: str = "paper", **session: Any) -> Explorer:
+        session = {"run": simulate_at_once, "make_scene": FakeScene} | session
+        started.append(Explorer(config or load_config("paper"), preset, port=0, **session))
+        return started[-1]
+
+    yield start
+    for explorer in started:
+        explorer.stop()
+
+
+@pytest.fixture
+def open_tab() -> Iterator[Callable[..., Tab]]:
+    """Opens tabs, and closes those that are still open at the end."""
+    tabs: list[Tab] = []
+
+    def open_it(explorer: Explorer, **size: int) -> Tab:
+        tabs.append(Tab(explorer, **size))
+        return tabs[-1]
+
+    yield open_it
+    for tab in tabs:
+        tab.close()

@@ -1,0 +1,219 @@
+"""The command line: what it prints, writes and returns."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rich.console import Console
+from typer.testing import CliRunner, Result
+
+import app.server
+import model
+from app import cli
+from model import Config, Trajectory, load_config
+from model.config import parse_config, preset_names
+from model.parameters import PARAMETER
+
+SHORT = ("--set", "simulation.duration=1")
+
+
+def trackride(*arguments: object) -> Result:
+    return CliRunner().invoke(cli.cli, [str(argument) for argument in arguments], prog_name="trackride")
+
+
+# Help
+
+
+def test_help_and_version():
+    assert {"explore", "run", "show"} <= set(trackride("--help").output.split())
+    assert trackride("--version").output.startswith("trackride")
+    assert trackride("--version").exit_code == 0
+
+
+@pytest.mark.parametrize("command", ["explore", "run", "show"])
+def test_every_command_helps_with_an_example_that_can_be_run(command):
+    words = trackride(command, "--help").output.partition("Example: trackride ")[2].split()
+    assert words[0] == command
+    assert words[1] in preset_names()
+    for option, value in pairwise(words):
+        if option == "--set":
+            assert value.partition("=")[0] in PARAMETER
+
+
+def test_help_does_not_wait_for_the_model_or_the_viewer():
+    code = "import sys, app.cli; sys.exit(bool({'numba', 'scipy', 'viser', 'pydantic'} & set(sys.modules)))"
+    assert subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[2]).returncode == 0
+
+
+# Show
+
+
+def test_show_prints_all_of_a_configuration():
+    assert parse_config(trackride("show").output) == load_config("paper")
+    changed = trackride("show", "half_round", "--set", "drive.speed_kmh=7", "--set", "name=Slow: one")
+    assert parse_config(changed.output) == load_config("half_round").replace(
+        {"drive.speed_kmh": 7, "name": "Slow: one"}
+    )
+
+
+def test_what_show_prints_can_be_given_back(tmp_path):
+    path = tmp_path / "mine.yaml"
+    path.write_text(trackride("show", "--set", "vehicle.road_wheels.positions=[1.5, 0, -1.5]").output)
+    again = trackride("show", path, "--set", "vehicle.road_wheels.count=5")
+    assert again.exit_code == 0
+    assert parse_config(again.output).vehicle.road_wheels.spacing == 1.5
+
+
+# Run
+
+
+def test_run_writes_what_it_shows(tmp_path):
+    out = tmp_path / "run.npz"
+    result = trackride("run", "paper", *SHORT, "--set", "drive.speed_kmh=20", "--out", out)
+    assert result.exit_code == 0
+    assert result.stderr == ""
+    assert [path.name for path in tmp_path.iterdir()] == ["run.npz"]
+    run = Trajectory.load(out)
+    assert (run.status, run.config.drive.speed_kmh, run.t[-1]) == ("complete", 20, 1)
+    rows = [line.replace("│", " ").split() for line in result.stdout.splitlines()]
+    load = run.normal_load
+    assert ["R1", f"{load[:, 0].min():.0f}", f"{load[:, 0].mean():.0f}", f"{load[:, 0].max():.0f}"] in rows
+    assert len([row for row in rows if row and row[0][:1] in ("R", "I") and row[0][1:].isdigit()]) == 11
+    rms = np.sqrt(np.mean(run.a[:, 0, 1] ** 2))
+    for words in (f"rms {rms:.4g} m/s²", "peak ", "imaginary wheels in the load 1", "drift", "Steps (rejected)",
+                  "Time taken", "Real-time factor"):  # fmt: skip
+        assert words in " ".join(" ".join(row) for row in rows)
+
+
+def test_run_writes_csv_and_needs_no_file(tmp_path):
+    out = tmp_path / "run.csv"
+    assert trackride("run", *SHORT, "--out", out).exit_code == 0
+    table = np.genfromtxt(out, delimiter=",", skip_header=1)
+    assert table.shape[0] == 201
+    assert np.isfinite(table).all()
+    assert trackride("run", *SHORT).exit_code == 0
+
+
+def test_run_warns():
+    result = trackride("run", "short_waves", *SHORT)
+    assert result.exit_code == 0
+    assert "Warning: The wavelength, 0.7 m, fits the wheel spacing. All road wheels rise and fall" in result.stderr
+
+
+def test_bad_input_names_all_faults_and_writes_nothing(tmp_path):
+    path, out = tmp_path / "bad.yaml", tmp_path / "run.npz"
+    path.write_text("drive: {speed: 3, speed_kmh: fast}\nvehicle: {chassis: {mass: -1}}")
+    result = trackride("run", path, "--set", "oops", "--set", "road.start=[1", "--out", out)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert result.stderr.splitlines() == [
+        "--set oops: give KEY=VALUE, such as drive.speed_kmh=25",
+        "--set road.start=[1: line 1, column 3: expected ',' or ']', but got '<stream end>'",
+        f"{path}: drive.speed: unknown key; the nearest known one is drive.speed_kmh",
+        f"{path}: drive.speed_kmh: 'fast' is not allowed; give a number from 0.5 to 100 km/h",
+        f"{path}: vehicle.chassis.mass: -1 is not allowed; give a number from 100 to 100000 kg",
+    ]
+    assert not out.exists()
+
+
+@pytest.mark.parametrize("command", ["run", "show", "explore"])
+def test_every_command_refuses_bad_input(command):
+    result = trackride(command, "--set", "drive.speed_kmh=500", "--set", "road.heigth=1")
+    assert result.exit_code == 2
+    assert "drive.speed_kmh: 500 is not allowed" in result.stderr
+    assert "road.heigth: unknown key; the nearest known one is road.height" in result.stderr
+    assert "nor a preset of that name (paper" in trackride(command, "papr").stderr
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("run.txt", "the name must end in .npz or .csv"),
+        ("run", "the name must end in .npz or .csv"),
+        ("missing/run.npz", "No such file or directory"),
+        ("file/run.csv", "Not a directory"),
+        ("folder.npz", "is a folder"),
+    ],
+)
+def test_where_nothing_can_be_written_nothing_is_computed(tmp_path, monkeypatch, name, words):
+    (tmp_path / "file").touch()
+    (tmp_path / "folder.npz").mkdir()
+    monkeypatch.setattr(model, "simulate", lambda *_: pytest.fail("it was computed"))
+    result = trackride("run", "--out", tmp_path / name)
+    assert result.exit_code == 2
+    assert words in result.stderr
+
+
+def test_a_vehicle_without_rest_pose_is_bad_input(tmp_path):
+    out = tmp_path / "run.npz"
+    result = trackride("run", "--set", "vehicle.imaginary_suspension.preload_force=60000", "--out", out)
+    assert result.exit_code == 2
+    assert "rest pose" in result.stderr
+    assert not out.exists()
+
+
+def test_a_diverged_run_keeps_its_good_part(tmp_path):
+    out = tmp_path / "run.npz"
+    coarse = ("--set", "simulation.integrator=rk4", "--set", "simulation.step=0.02")
+    result = trackride("run", *coarse, "--out", out)
+    assert result.exit_code == 3
+    run = Trajectory.load(out)
+    assert run.status.startswith("diverged at t = ")
+    assert f"The run ended early: {run.status}." in result.stderr
+    assert run.advice in result.stderr
+    assert f"The good part, up to t = {run.t[-1]:g} s, is in {out}." in result.stderr
+    assert "is in" not in trackride("run", *coarse).stderr
+
+
+def test_ctrl_c_keeps_the_good_part(tmp_path, monkeypatch):
+    before = signal.getsignal(signal.SIGINT)
+    simulate = model.simulate
+
+    def interrupted(config: Config, on_progress, should_stop) -> Trajectory:
+        def stop() -> bool:
+            assert not should_stop()
+            signal.raise_signal(signal.SIGINT)
+            return should_stop()
+
+        return simulate(config, on_progress, stop)
+
+    monkeypatch.setattr(model, "simulate", interrupted)
+    out = tmp_path / "run.npz"
+    result = trackride("run", "--out", out)
+    assert result.exit_code == 130
+    run = Trajectory.load(out)
+    assert run.status == "cancelled"
+    assert 0 < run.t[-1] < 10
+    assert "The run ended early: cancelled." in result.stderr
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_a_progress_bar_stands_on_a_terminal(monkeypatch):
+    monkeypatch.setattr(cli, "errors", Console(stderr=True, force_terminal=True))
+    result = trackride("run", *SHORT, "--set", "name=[red]Tricky")
+    assert result.exit_code == 0
+    assert "[red]Tricky" in result.stderr
+    assert "%" in result.stderr
+    assert "Tricky" not in trackride("run", *SHORT).stdout
+
+
+# Explore
+
+
+def test_explore_hands_over_to_the_server(monkeypatch, tmp_path):
+    served = []
+    monkeypatch.setattr(app.server, "serve", lambda *given, **options: served.append((given, options)))
+    path = tmp_path / "mine.yaml"
+    path.write_text("drive: {speed_kmh: 12}")
+    assert trackride("explore").exit_code == 0
+    assert trackride("explore", path, "--host", "0.0.0.0", "--port", "8090", "--no-browser").exit_code == 0
+    assert served == [
+        ((load_config("paper"), "paper"), {"host": "127.0.0.1", "port": 8080, "open_browser": True}),
+        ((load_config(path), "mine.yaml"), {"host": "0.0.0.0", "port": 8090, "open_browser": False}),
+    ]

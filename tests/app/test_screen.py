@@ -1,0 +1,49 @@
+"""Sizes of the panels, read off the size of the 3-D view."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.screen import LEFT, RIGHT, SEAMS, WIDEST, Screen, chart_height
+
+
+@pytest.mark.parametrize("scale", [0.5, 1.0, 1.25, 1.5, 2.0])
+@pytest.mark.parametrize(("width", "height"), [(1280, 720), (1600, 900), (2560, 1440)])
+def test_the_page_is_found_behind_the_view(width: int, height: int, scale: float) -> None:
+    screen = Screen(int(width * scale), int(height * scale))
+    assert screen.update(int(width * scale), int(height * scale)) is None
+    docked = width - LEFT - RIGHT - SEAMS
+    layout = screen.update(int(docked * scale), int(height * scale))
+    assert layout is not None
+    assert layout.page_height == pytest.approx(height, abs=2)
+    assert RIGHT <= layout.right <= WIDEST
+    view = width - LEFT - layout.right - SEAMS
+    assert layout.player_width <= view
+    middle = layout.player_x + layout.player_width / 2
+    assert middle == pytest.approx(view / 2, abs=3)
+
+
+def test_half_docked_panels_tell_nothing() -> None:
+    screen = Screen(1280, 720)
+    assert screen.update(1280 - LEFT, 720) is None
+
+
+def test_a_taller_page_makes_taller_charts_but_coarser_drawing_does_not() -> None:
+    screen = Screen(1600, 900)
+    view = 1600 - LEFT - RIGHT - SEAMS
+    assert screen.update(view, 900) is not None
+    assert screen.update(int(view * 0.75), 675) is None  # viser draws with fewer pixels
+    taller = screen.update(int(view * 0.75), 900)
+    assert taller is not None
+    assert taller.page_height == pytest.approx(1200, abs=3)
+    assert chart_height(1200, 3) > chart_height(900, 3)
+
+
+@pytest.mark.parametrize(("height", "plots"), [(720, 3), (900, 3), (1000, 2), (1200, 3)])
+def test_charts_fit_below_each_other(height: int, plots: int) -> None:
+    assert plots * chart_height(height, plots) < height
+
+
+def test_charts_stay_usable_on_any_page() -> None:
+    assert chart_height(300, 3) == 130
+    assert chart_height(5000, 2) == 460

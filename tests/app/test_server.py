@@ -1,0 +1,139 @@
+"""Where the explorer listens, what it says, and how it ends."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import urllib.request
+from typing import Any
+
+import pytest
+import viser
+
+import app.server
+from app.server import Explorer, ServerError, free_port, serve
+from model.config import load_config
+from tests.app.conftest import Tab, trackride_threads, wait_for
+
+PAPER = load_config("paper")
+
+
+@pytest.fixture
+def taken() -> Any:
+    """A port that somebody listens on."""
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        yield other.getsockname()[1]
+
+
+def test_a_taken_port_leads_to_a_later_one(taken: int) -> None:
+    assert free_port("127.0.0.1", 0) == 0
+    free = free_port("127.0.0.1", taken)
+    assert taken < free < taken + 100
+
+
+@pytest.mark.parametrize("host", ["no such host", "203.0.113.7", "999.1.1.1", "\ud800", "x" * 300])
+def test_a_host_that_is_not_ours_is_an_error_at_once(host: str) -> None:
+    with pytest.raises(ServerError, match="cannot listen"):
+        free_port(host, 8080)
+
+
+@pytest.mark.parametrize("port", [-1, 65536, 10**9])
+def test_a_port_that_does_not_exist_is_an_error(port: int) -> None:
+    with pytest.raises(ServerError, match="does not exist"):
+        free_port("127.0.0.1", port)
+
+
+def test_serve_ends_with_a_message_when_it_cannot_listen() -> None:
+    with pytest.raises(SystemExit, match=r"cannot listen on 203\.0\.113\.7"):
+        serve(PAPER, "paper", host="203.0.113.7", open_browser=False)
+
+
+def test_the_page_is_served_and_stopping_ends_everything(explore: Any, open_tab: Any) -> None:
+    explorer: Explorer = explore()
+    with urllib.request.urlopen(explorer.address, timeout=10) as page:
+        assert b"<html" in page.read(2000).lower()
+    tab: Tab = open_tab(explorer)
+    wait_for(lambda: tab.shows_run(1))
+    explorer.stop()
+    assert not trackride_threads()
+    assert explorer.sessions == ()
+
+
+def test_a_file_of_ones_own_stands_beside_the_presets(explore: Any, open_tab: Any) -> None:
+    config = PAPER.replace({"name": "Mine", "drive.speed_kmh": 40})
+    tab: Tab = open_tab(explore(config, "mine.yaml"))
+    wait_for(lambda: tab.shows_run(1))
+    preset = tab.widget("Preset")
+    assert preset["value"] == "Mine"
+    assert "Half-round obstacle" in preset["props"]["options"]
+    assert tab.widget("Speed, km/h")["value"] == 40
+
+
+def test_changes_to_a_preset_are_undone_by_reset(explore: Any, open_tab: Any) -> None:
+    tab: Tab = open_tab(explore(PAPER.replace({"drive.speed_kmh": 40}), "paper"))
+    wait_for(lambda: tab.shows_run(1))
+    assert tab.widget("Speed, km/h")["value"] == 40
+    tab.press("Reset all parameters")
+    wait_for(lambda: tab.shows_run(2))
+    wait_for(lambda: tab.widget("Speed, km/h")["value"] == 15)
+
+
+def test_a_tab_that_cannot_be_set_up_is_told(explore: Any, open_tab: Any) -> None:
+    def broken(client: Any, dark: bool) -> Any:
+        raise RuntimeError("no scene")
+
+    tab: Tab = open_tab(explore(make_scene=broken))
+    wait_for(lambda: tab.notifications, "a notification")
+    wait_for(lambda: not trackride_threads(), "the threads to end")
+
+
+def test_no_visitor_can_open_a_tunnel(explore: Any, open_tab: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = threading.Event()
+    monkeypatch.setattr("viser._viser.ViserTunnel", lambda *arguments: asked.set())
+    tab: Tab = open_tab(explore())
+    tab.send("ShareUrlRequest")
+    wait_for(lambda: tab.shows_run(1))
+    assert not asked.wait(0.2)
+    theme = next(message for message in tab.messages if message["type"] == "ThemeConfigurationMessage")
+    assert not theme["show_share_button"]
+
+
+def test_it_says_where_it_is_and_ends_on_interrupt(taken: int) -> None:
+    code = (
+        "from model.config import load_config; from app.server import serve; "
+        f"serve(load_config('paper'), 'paper', port={taken}, open_browser=False)"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        env=os.environ | {"PYTHONUNBUFFERED": "1"},
+    ) as process:  # fmt: skip
+        assert process.stdout is not None
+        said = [process.stdout.readline(), process.stdout.readline()]
+        process.send_signal(signal.SIGINT)
+        rest, errors = process.communicate(timeout=20)
+    port = int(said[0].rsplit(" ", 1)[1].strip(".\n"))
+    assert f"Port {taken} is taken" in said[0]
+    assert port != taken
+    assert f"http://127.0.0.1:{port} " in said[1]
+    assert "Stopped." in rest
+    assert "Traceback" not in errors
+    assert process.returncode == 0
+
+
+def test_the_browser_opens_the_address_in_use(monkeypatch: pytest.MonkeyPatch, taken: int) -> None:
+    opened: list[str] = []
+    monkeypatch.setattr(app.server.webbrowser, "open", lambda address: bool(opened.append(address)) or True)
+
+    def interrupt(server: viser.ViserServer) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(viser.ViserServer, "sleep_forever", interrupt)
+    serve(PAPER, "paper", port=taken)
+    assert opened[0].startswith("http://127.0.0.1:")
+    assert not opened[0].endswith(f":{taken}")

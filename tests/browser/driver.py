@@ -1,0 +1,109 @@
+"""The explorer as a user starts it, and a real browser that looks at it: for tests and for pictures."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
+
+FLAGS = [
+    "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+    "--disable-accelerated-2d-canvas", "--disable-background-networking", "--disable-component-update",
+    "--disable-sync", "--no-first-run", "--disable-quic",
+]  # fmt: skip
+FIRST_RUN = 120_000  # ms: the interface, and the model's compilation if nobody has run it yet
+SOON = 30_000  # ms: anything else, on a busy machine with software WebGL
+
+
+@contextmanager
+def running_explorer(*arguments: str) -> Iterator[str]:
+    """The address of an explorer in a process of its own."""
+    command = [sys.executable, "-m", "app", "explore", "--no-browser", "--port", "0", *arguments]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        found = re.search(r"http://\S+", process.stdout.readline())
+        assert found, "the explorer did not say where it can be opened"
+        try:
+            yield found.group()
+        finally:
+            process.terminate()
+
+
+@contextmanager
+def chromium() -> Iterator[Browser]:
+    """Chromium with WebGL in software."""
+    path = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    assert path, "no Chromium was found: `make chromium` installs one"
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=path, args=FLAGS)
+        yield browser
+        browser.close()
+
+
+class Explorer:
+    """The explorer's page, by what a user sees on it."""
+
+    def __init__(self, page: Page) -> None:
+        self.page = page
+        page.set_default_timeout(SOON)
+
+    def open(self, address: str) -> Explorer:
+        """Until the first run stands in the plots."""
+        self.page.goto(address)
+        expect(self.status).to_contain_text("real time", timeout=FIRST_RUN)
+        expect(self.charts.first).to_be_visible(timeout=SOON)
+        return self
+
+    @property
+    def status(self) -> Locator:
+        """The line that names the run."""
+        return self.page.locator(".trackride-status")
+
+    @property
+    def charts(self) -> Locator:
+        return self.page.locator(".uplot canvas")
+
+    def control(self, label: str) -> Locator:
+        """What stands behind a label."""
+        text = self.page.locator("label", has_text=re.compile(rf"^{re.escape(label)}"))
+        return self.page.locator(f"[id='{text.first.get_attribute('for')}']")
+
+    def thumb(self, label: str) -> Locator:
+        """The handle of a slider."""
+        return self.control(label).locator("[role=slider]")
+
+    def value(self, label: str) -> float:
+        """What a slider stands at."""
+        return float(self.thumb(label).get_attribute("aria-valuenow") or "nan")
+
+    def press(self, label: str, key: str) -> None:
+        """A key on a slider."""
+        self.thumb(label).focus()
+        self.page.keyboard.press(key)
+
+    def run_number(self) -> int:
+        found = re.search(r"Run (\d+)", self.status.inner_text())
+        assert found
+        return int(found.group(1))
+
+    def curves(self, chart: int = 0) -> str:
+        """The pixels of a chart."""
+        return self.charts.nth(chart).evaluate("canvas => canvas.toDataURL()")
+
+    def wait_for_run(self, after: int) -> int:
+        """Until a run with a higher number stands in the page."""
+        self.page.wait_for_function(
+            "after => { const found = /Run (\\d+) · .*real time/.exec("
+            "document.querySelector('.trackride-status')?.innerText ?? ''); return found && Number(found[1]) > after }",
+            arg=after,
+            timeout=SOON,
+        )
+        return self.run_number()
+
+    def button(self, name: str) -> Locator:
+        return self.page.get_by_role("button", name=name, exact=False)

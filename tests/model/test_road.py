@@ -1,0 +1,288 @@
+"""Roads: heights as model.md defines them, and the nearest point against brute force on random profiles."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize_scalar
+
+from model.road import Piece, Profile, Road, build_road
+from model.road_table import RoadTable
+from tests.model.support import FLAT, PAPER
+
+RADIUS = 0.32
+
+
+def brute_force(road: Road, centre: np.ndarray) -> float:
+    """Distance from a centre to the profile: every dip of a fine sampling polished by itself."""
+    X, Y = centre
+
+    def D(s: float) -> float:
+        return float((s - X) ** 2 + (road.height(np.array([s]))[0] - Y) ** 2)
+
+    ends = np.concatenate([piece.nodes[[0, -1]] for piece in road.profile.pieces])  # maybe corners
+    s = np.union1d(X + np.linspace(-1.5, 1.5, 6001) * road.radius, ends[np.abs(ends - X) < 1.5 * road.radius])
+    values = (s - X) ** 2 + (road.height(s) - Y) ** 2
+    inner = values[1:-1]
+    dips = 1 + np.flatnonzero((inner <= values[:-2]) & (inner <= values[2:]))
+    dips = dips[values[dips] <= values.min() + 1e-3 * road.radius**2]
+    found = [
+        minimize_scalar(D, bounds=(s[k - 1], s[k + 1]), method="bounded", options={"xatol": 1e-12}).fun for k in dips
+    ]
+    return float(np.sqrt(min([*found, values.min()])))
+
+
+def centres_near(road: Road, rng: np.random.Generator, x: np.ndarray) -> np.ndarray:
+    """Wheel centres above these x, in the ground, touching and a little above: (K, 2)."""
+    highest = road.height(x[:, None] + np.linspace(-1, 1, 201) * road.radius).max(axis=1)
+    return np.column_stack([x, highest + road.radius * rng.uniform(0.3, 1.1, len(x))])
+
+
+def assert_nearest(road: Road, centres: np.ndarray, tolerance: float = 1e-10) -> None:
+    """The road's answer is a point of the road, as far away as brute force finds, and n points from it to P."""
+    points, normals, distances = road.nearest(centres)
+    for P, point, n, d in zip(centres, points, normals, distances, strict=True):
+        right = brute_force(road, P)
+        if np.isinf(d):
+            assert right >= road.radius - tolerance
+            continue
+        assert abs(d) == pytest.approx(np.hypot(*(P - point)), abs=1e-12)
+        assert point[1] == pytest.approx(road.height(point[:1])[0], abs=tolerance)
+        np.testing.assert_allclose(point + d * n, P, atol=1e-12)
+        assert np.hypot(*n) == pytest.approx(1.0, abs=1e-12)
+        if right < road.radius:
+            assert abs(d) == pytest.approx(right, abs=tolerance)
+            assert (d < 0.0) == (P[1] < road.height(P[:1])[0])
+        else:  # only that it does not touch matters
+            assert d >= road.radius - tolerance
+
+
+def waves(rng: np.random.Generator, roughness: float, period: float) -> Piece:
+    """A sum of ten sines that repeat by the period; roughness 1 has valleys far tighter than the wheel."""
+    number = rng.integers(1, 13, 10)
+    phase = rng.uniform(0.0, 2 * np.pi, 10)
+    k = 2 * np.pi * number / period
+    amplitude = roughness * rng.uniform(0.3, 1.0, 10) / k / RADIUS / 6
+
+    def derivatives(x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        angle = np.multiply.outer(x, k) + phase
+        return (
+            np.sin(angle) @ amplitude,
+            np.cos(angle) @ (amplitude * k),
+            -np.sin(angle) @ (amplitude * k**2),
+        )
+
+    return Piece(3.0 + np.linspace(0.0, period, 1537), derivatives)
+
+
+def polyline(x: np.ndarray, y: np.ndarray) -> Profile:
+    """Straight pieces with corners between them."""
+
+    def piece(k: int) -> Piece:
+        slope = (y[k + 1] - y[k]) / (x[k + 1] - x[k])
+        return Piece(x[k : k + 2], lambda s: (y[k] + slope * (s - x[k]), np.full(s.shape, slope), 0 * s))
+
+    return Profile([piece(k) for k in range(len(x) - 1)])
+
+
+# Heights
+
+
+def sine_height(x: np.ndarray, x_s: float, ramp: float) -> np.ndarray:
+    """The paper's road, A = 0.1 m, λ = 7 m, straight from model.md."""
+    u = np.clip((x - x_s) / ramp, 0.0, 1.0)
+    return 0.1 * u**2 * (3 - 2 * u) * np.sin(2 * np.pi * (x - x_s) / 7.0)
+
+
+def test_the_papers_road_begins_a_metre_ahead_of_the_first_wheel():
+    x = np.linspace(-10.0, 400.0, 5001)
+    np.testing.assert_allclose(build_road(PAPER).height(x), sine_height(x, 1.75 + 1.0, 7.0), atol=1e-12)
+
+
+def test_start_and_ramp_of_a_sine_road_can_be_given():
+    road = build_road(PAPER.replace({"road.start": 5.0, "road.ramp": 2.5}))
+    x = np.linspace(0.0, 40.0, 1001)
+    np.testing.assert_allclose(road.height(x), sine_height(x, 5.0, 2.5), atol=1e-12)
+
+
+def test_without_ramp_the_waves_begin_at_once():
+    road = build_road(PAPER.replace({"road.start": 5.0, "road.ramp": 0.0}))
+    np.testing.assert_allclose(road.height(np.array([4.9, 5.0 + 7 / 4, 5.0 + 21 / 4])), [0.0, 0.1, -0.1], atol=1e-12)
+
+
+def test_flat_road_is_flat_everywhere():
+    np.testing.assert_array_equal(build_road(FLAT).height(np.array([-1e5, 0.0, 0.5, 1e5])), 0.0)
+
+
+@pytest.mark.parametrize(("height", "radius"), [(0.1, 0.2), (0.05, 1.5), (0.19, 0.2), (0.2, 0.2), (0.001, 0.01)])
+def test_half_round_is_the_part_of_a_circle_above_ground(height, radius):
+    changes = {"road.height": height, "road.radius": radius, "road.position": 6.0}
+    road = build_road(PAPER.replace({"road.type": "half_round"} | changes))
+    half_width = np.sqrt(radius**2 - (radius - height) ** 2)
+    x = 6.0 + np.linspace(-1.0, 1.0, 2001) * min(half_width, radius * np.sin(np.radians(85)))
+    np.testing.assert_allclose(road.height(x), np.sqrt(radius**2 - (x - 6.0) ** 2) - (radius - height), atol=1e-12)
+    assert road.height(np.array([6.0]))[0] == pytest.approx(height, abs=1e-12)
+    outside = 6.0 + np.array([-1.0, 1.0]) * (half_width + 0.005 * radius)
+    np.testing.assert_allclose(road.height(outside), 0.0, atol=1e-12)
+
+
+# The table
+
+
+def table_height(table: RoadTable, x: np.ndarray) -> np.ndarray:
+    """h from the quintics."""
+    if table.period > 0.0:
+        x = np.where(x > table.repeat_from, table.repeat_from + np.mod(x - table.repeat_from, table.period), x)
+    c = np.maximum(np.searchsorted(table.node, x, side="right") - 1, 0)
+    u = x - table.node[c]
+    return sum(table.coefficients[c, power] * u**power for power in range(6))
+
+
+ROADS = {
+    "paper": {},
+    "steepest": {"road.amplitude": 0.5, "road.wavelength": 0.5},
+    "longest": {"road.wavelength": 200.0, "road.amplitude": 0.5},
+    "bridging": {"road.amplitude": 0.04, "road.wavelength": 0.7},
+    "long ramp": {"road.wavelength": 0.5, "road.ramp": 33.3},
+    "short ramp": {"road.wavelength": 7.0, "road.ramp": 0.3},
+    "half round": {"road.type": "half_round"},
+    "upright foot": {"road.type": "half_round", "road.height": 0.2, "road.radius": 0.2},
+    "shallow": {"road.type": "half_round", "road.height": 0.05, "road.radius": 3.0, "road.position": 8.0},
+}
+
+
+@pytest.mark.parametrize("name", ROADS)
+def test_table_and_formula_agree(name):
+    road = build_road(PAPER.replace(ROADS[name]))
+    x = np.random.default_rng(0).uniform(-5.0, 60.0, 20_000)
+    np.testing.assert_allclose(table_height(road.table, x), road.height(x), rtol=0, atol=1e-12)
+
+
+# The nearest point
+
+
+@pytest.mark.parametrize("name", ROADS)
+def test_nearest_point_on_the_roads(name):
+    road = build_road(PAPER.replace(ROADS[name]))
+    rng = np.random.default_rng(1)
+    low, high = (2.0, 9.0) if road.profile.period == 0.0 else (0.0, 45.0)
+    assert_nearest(road, centres_near(road, rng, rng.uniform(low, high, 40)))
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_nearest_point_on_random_waves(seed):
+    rng = np.random.default_rng(seed)
+    period = rng.uniform(1.0, 6.0)
+    road = Road(Profile([waves(rng, 10.0 ** rng.uniform(-1.5, 0.0), period)], period), RADIUS)
+    assert_nearest(road, centres_near(road, rng, rng.uniform(2.0, 12.0, 30)))
+
+
+def test_the_random_waves_have_safe_and_unsafe_stretches():
+    """Both searches are met above: the quick one where one minimum is certain, and that through all cells."""
+    shares = []
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        period = rng.uniform(1.0, 6.0)
+        table = Road(Profile([waves(rng, 10.0 ** rng.uniform(-1.5, 0.0), period)], period), RADIUS).table
+        shares.append(table.safe.mean())
+    assert min(shares) < 0.3
+    assert max(shares) > 0.9
+    assert sum(0.3 < share < 0.9 for share in shares) >= 2
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_nearest_point_on_corners_and_steps(seed):
+    rng = np.random.default_rng(seed)
+    x = 3.0 + np.cumsum(rng.choice([0.01, 0.1, 0.5, 1.5], 12))  # gaps of 1 cm are as good as steps
+    y = rng.choice([0.0, 0.05, 0.15, -0.1], 12)
+    road = Road(polyline(x, y), RADIUS)
+    assert_nearest(road, centres_near(road, rng, rng.uniform(x[0] - 0.5, x[-1] + 0.5, 30)))
+
+
+@pytest.mark.parametrize("radius", [0.05, 1.0, 2.0])
+def test_nearest_point_for_small_and_large_wheels(radius):
+    rng = np.random.default_rng(4)
+    road = Road(Profile([waves(rng, 0.5, 4.0)], 4.0), radius)
+    assert_nearest(road, centres_near(road, rng, rng.uniform(2.0, 12.0, 40)))
+
+
+def test_a_wheel_bridges_a_valley_tighter_than_itself():
+    """On waves of 0.7 m with r = 0.32 m a wheel above the trough rests on both flanks, not in the trough."""
+    waves = {"road.amplitude": 0.1, "road.wavelength": 0.7, "road.ramp": 0.0, "road.start": 3.0}
+    road = build_road(PAPER.replace(waves))
+    trough = 3.0 + 0.7 * 20.75
+    points, _, d = road.nearest(np.array([[trough, 0.25]]))
+    assert d[0] < 0.35 - 0.01  # the trough itself is 0.35 m below
+    assert abs(points[0, 0] - trough) > 0.05
+    assert d[0] == pytest.approx(brute_force(road, np.array([trough, 0.25])), abs=1e-12)
+
+
+def test_a_centre_below_the_road_counts_negative_and_turns_the_normal_round():
+    rng = np.random.default_rng(5)
+    for changes in (ROADS["paper"], ROADS["bridging"]):
+        road = build_road(PAPER.replace(changes))
+        x = rng.uniform(0.0, 30.0, 30)
+        below = np.column_stack([x, road.height(x) - rng.uniform(0.001, 0.25, 30)])
+        _, normals, distances = road.nearest(below)
+        assert (distances < 0.0).all()
+        assert (normals[:, 1] > 0.0).all()  # from the centre up to the road and on
+        assert_nearest(road, below)
+
+
+def test_a_centre_on_the_road_has_the_roads_normal():
+    road = build_road(PAPER)
+    x = np.linspace(0.0, 40.0, 101)
+    y, slope, _ = road.derivatives(x)
+    points, normals, distances = road.nearest(np.column_stack([x, y]))
+    np.testing.assert_allclose(distances, 0.0, atol=1e-12)
+    np.testing.assert_allclose(points, np.column_stack([x, y]), atol=1e-12)
+    np.testing.assert_allclose(
+        normals, np.column_stack([-slope, np.ones(101)]) / np.hypot(1, slope)[:, None], atol=1e-9
+    )
+
+
+def test_distance_is_continuous_through_the_road():
+    road = build_road(PAPER)
+    heights = road.height(np.array([12.0]))[0] + np.linspace(-0.01, 0.01, 41)
+    _, normals, distances = road.nearest(np.column_stack([np.full(41, 12.0), heights]))
+    assert np.abs(np.diff(distances, 2)).max() < 1e-6
+    assert np.abs(np.diff(normals, axis=0)).max() < 1e-3
+
+
+def test_a_centre_far_above_does_not_touch():
+    for changes in ROADS.values():
+        road = build_road(PAPER.replace(changes))
+        _, _, distances = road.nearest(np.array([[4.0, 3.0], [4.0, 100.0]]))
+        assert (distances >= road.radius).all()
+
+
+@pytest.mark.parametrize("wavelength", [0.7, 7.0, 3.3])
+def test_waves_repeat_without_end(wavelength):
+    """A hundred kilometres along, the contact is where it is in the first waves."""
+    road = build_road(PAPER.replace({"road.amplitude": 0.04, "road.wavelength": wavelength}))
+    rng = np.random.default_rng(6)
+    here = centres_near(road, rng, rng.uniform(20.0, 20.0 + 2 * wavelength, 50))
+    away = np.array([np.round(1e5 / wavelength) * wavelength, 0.0])
+    points, normals, distances = road.nearest(here)
+    far_points, far_normals, far_distances = road.nearest(here + away)
+    np.testing.assert_allclose(far_distances, distances, atol=1e-9)
+    np.testing.assert_allclose(far_points - away, points, atol=1e-8)
+    np.testing.assert_allclose(far_normals, normals, atol=1e-8)
+    np.testing.assert_allclose(road.height(here[:, 0] + away[0]), road.height(here[:, 0]), atol=1e-9)
+
+
+def test_flat_road_has_no_end():
+    road = build_road(FLAT)
+    centres = np.array([[-1e5, 0.3], [-0.1, 0.3], [0.5, 0.3], [1e6, 0.3]])
+    points, normals, distances = road.nearest(centres)
+    np.testing.assert_allclose(points, centres * [1, 0], atol=1e-12)
+    np.testing.assert_allclose(normals, np.tile([0.0, 1.0], (4, 1)), atol=1e-12)
+    np.testing.assert_allclose(distances, 0.3, atol=1e-12)
+
+
+@pytest.mark.parametrize("x", [np.inf, -np.inf, np.nan])
+def test_a_position_that_is_no_number_gives_no_contact(x):
+    """A diverging run asks for such: the answer must not be taken for a distance."""
+    for changes in ROADS.values():
+        _, _, distances = build_road(PAPER.replace(changes)).nearest(np.array([[x, 0.3], [x, -0.3]]))
+        assert np.isnan(distances).all()

@@ -1,0 +1,36 @@
+"""`make readme`: puts what is generated into the README: the parameter table and the latest benchmark figures."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from model.parameters import parameter_table
+
+ROOT = Path(__file__).parents[1]
+RESULTS = ROOT / "tests" / "benchmarks" / "results"
+
+
+def filled(text: str, mark: str, content: str) -> str:
+    """The text with the content between <!-- mark … --> and <!-- end of mark -->."""
+    head, _, rest = text.partition(f"<!-- {mark}")
+    comment, _, rest = rest.partition("-->")
+    _, _, tail = rest.partition(f"<!-- end of {mark} -->")
+    return f"{head}<!-- {mark}{comment}-->\n\n{content.strip()}\n\n<!-- end of {mark} -->{tail}"
+
+
+def benchmark_table() -> str:
+    """The newest kept figures, as Markdown."""
+    kept = max((json.loads(path.read_text()) for path in RESULTS.glob("*.json")), key=lambda kept: kept["date"])
+    rows = [f"| {what} | {figure['median']:.3g} {figure['unit']} |" for what, figure in kept["figures"].items()]
+    return "\n".join([f"On {kept['machine']}, {kept['date']}:", "", "| What | Median |", "| --- | --- |", *rows])
+
+
+def main() -> None:
+    readme = ROOT / "README.md"
+    text = filled(readme.read_text(), "parameters", parameter_table())
+    readme.write_text(filled(text, "benchmarks", benchmark_table()))
+
+
+if __name__ == "__main__":
+    main()
