@@ -40,3 +40,4 @@ pictures: setup chromium
 
 clean:
 	rm -rf .venv build *.egg-info
+	find app assets configs model tests -name __pycache__ -prune -exec rm -rf {} +

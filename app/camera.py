@@ -12,6 +12,7 @@ from assets.layout import Layout
 
 View = Literal["side", "three-quarter", "front", "wheel"]
 FIELD_OF_VIEW = 0.36  # rad, vertical: a long lens, so that wheels stay round and heights comparable
+FARTHEST = 150.0  # m: well within the sky
 MARGIN = 1.05  # of what is to be in the picture
 
 
@@ -71,12 +72,13 @@ class Camera:
         self._view: tuple[View, Layout] | None = None
         self._stood: Standpoint | None = None
         self._aspect = 0.0
+        client.camera.max_orbit_distance = FARTHEST
         client.camera.on_update(self._refit)
 
     def look(self, view: View, layout: Layout) -> None:
         """Go to a standpoint."""
         self._view = view, layout
-        self._aspect = self._camera.aspect
+        self._aspect = _aspect(self._camera)
         self._stood = standpoint(view, layout, self._aspect)
         with self._client.atomic():
             self._camera.fov = self._stood.fov
@@ -86,8 +88,13 @@ class Camera:
 
     async def _refit(self, camera: viser.CameraHandle) -> None:
         """Stand anew when the picture's shape has changed, unless the user has moved."""
-        if self._view is None or self._stood is None or abs(camera.aspect / self._aspect - 1) < 0.01:
+        if self._view is None or self._stood is None or abs(_aspect(camera) / self._aspect - 1) < 0.01:
             return
         moved = np.linalg.norm(camera.position - self._stood.position)
         if moved < 0.01 * np.linalg.norm(self._stood.position):
             self.look(*self._view)
+
+
+def _aspect(camera: viser.CameraHandle) -> float:
+    """Width by height of the picture, also while a page is being opened and has no size yet."""
+    return max(camera.image_width, 1) / max(camera.image_height, 1)

@@ -68,6 +68,9 @@ class Theme:
     zenith: Colour
     ground: Colour
     road: tuple[Colour, Colour]  # every other metre
+    ghost: Colour
+    marks: Colour  # lines that are drawn over the scene
+    grid: Colour
     key_light: float  # intensities
     sky_light: float
 
@@ -78,6 +81,9 @@ LIGHT = Theme(
     zenith=(70, 130, 205),
     ground=(142, 150, 122),
     road=((214, 202, 180), (190, 177, 152)),
+    ghost=(118, 84, 214),
+    marks=(30, 34, 40),
+    grid=(140, 150, 164),
     key_light=3.0,
     sky_light=1.6,
 )
@@ -87,6 +93,9 @@ DARK = Theme(
     zenith=(14, 18, 24),
     ground=(46, 50, 53),
     road=((92, 95, 100), (76, 79, 84)),
+    ghost=(196, 172, 255),
+    marks=(236, 240, 246),
+    grid=(96, 104, 116),
     key_light=2.4,
     sky_light=1.3,
 )

@@ -18,6 +18,7 @@ from model.validation import Fault
 
 PRECISION = 4  # decimals that a box takes and shows
 FINEST_STEP = 10**-PRECISION  # parameters that need finer ones are typed as text: 1e-6
+ONE_EACH = " Here one for each road wheel, front first."
 IMAGINARY = "vehicle.imaginary_"
 IMAGINARY_SWITCH = "vehicle.imaginary_wheels.enabled"
 
@@ -30,6 +31,10 @@ class Wishes(Protocol):
     def load(self, preset: str) -> None: ...
 
     def reset(self) -> None: ...
+
+    def undo(self) -> None: ...
+
+    def redo(self) -> None: ...
 
     def fail(self, error: Exception) -> None: ...
 
@@ -60,7 +65,7 @@ def hint(parameter: Parameter) -> str:
 def allowed(parameter: Parameter) -> str:
     """Range and unit as shown: "0.5 to 100 km/h"."""
     if parameter.kind == "choice":
-        return "one of " + ", ".join(map(_words, parameter.choices))
+        return "one of " + ", ".join(map(choice_words, parameter.choices))
     low, high = (number_text(shown_number(parameter, bound)) for bound in (parameter.low, parameter.high))
     return f"{low} to {high} {parameter.shown_unit}".strip()
 
@@ -97,7 +102,8 @@ def file_value(parameter: Parameter, text: str) -> Any:
     return values if parameter.kind == "list" or len(values) > 1 else values[0]
 
 
-def _words(choice: str) -> str:
+def choice_words(choice: str) -> str:
+    """A choice as people write it: "half round"."""
     return choice.replace("_", " ")
 
 
@@ -122,7 +128,7 @@ class Control:
             self._one: Any = gui.add_text(label, shown_text(parameter, value), hint=help_text)
         elif parameter.kind == "choice":
             self._one = gui.add_dropdown(
-                label, tuple(map(_words, parameter.choices)), initial_value=_words(value), hint=help_text
+                label, tuple(map(choice_words, parameter.choices)), initial_value=choice_words(value), hint=help_text
             )
         elif parameter.kind == "flag":
             self._one = gui.add_checkbox(label, value, hint=help_text)
@@ -144,7 +150,7 @@ class Control:
             self._one.precision = max(PRECISION, _decimals(first))
         self._one.on_update(by_user(lambda event: wishes.change(parameter.key, self.value), wishes.fail))
         if parameter.per_wheel:
-            self._list = gui.add_text(label, "", hint=f"{help_text} Here one for each road wheel, front first.")
+            self._list = gui.add_text(label, "", hint=help_text + ONE_EACH)
             self._list.on_update(by_user(lambda event: wishes.change(parameter.key, self.listed_value), wishes.fail))
             self.show(value)
 
@@ -153,7 +159,7 @@ class Control:
         """What the slider or box says, as in a file."""
         shown = self._one.value
         if isinstance(shown, str) and self.parameter.kind == "choice":
-            return next((choice for choice in self.parameter.choices if _words(choice) == shown), shown)
+            return next((choice for choice in self.parameter.choices if choice_words(choice) == shown), shown)
         if isinstance(shown, str):
             return file_value(self.parameter, shown)
         return shown if isinstance(shown, bool) else file_number(self.parameter, shown)
@@ -182,7 +188,7 @@ class Control:
         if _typed(self.parameter):
             self._one.value = shown_text(self.parameter, value)
         elif isinstance(value, str):
-            self._one.value = _words(value)
+            self._one.value = choice_words(value)
         elif isinstance(value, bool):
             self._one.value = value
         else:
@@ -196,6 +202,14 @@ class Control:
         if self.parameter.what_if and not isinstance(value, tuple):
             shown = shown_number(self.parameter, value)
             self._one.min, self._one.max = min(self._one.min, shown), max(self._one.max, shown)
+
+    def describe(self, parameter: Parameter) -> None:
+        """Say the same parameter in another unit."""
+        if parameter != self.parameter:
+            self.parameter = parameter
+            self._one.label, self._one.hint = shown_label(parameter), hint(parameter)
+            if self._list is not None:
+                self._list.label, self._list.hint = shown_label(parameter), hint(parameter) + ONE_EACH
 
     def enable(self, applies: bool) -> None:
         """Let it be used, or show that it means nothing at present: a slider turns grey, a box of a road goes."""
@@ -212,22 +226,26 @@ class ControlPanel:
         self, gui: viser.GuiApi, presets: Mapping[str, Config], preset: str, config: Config, wishes: Wishes
     ) -> None:
         """presets: name -> configuration; `preset` is shown as the chosen one, `config` in the controls."""
-        titles = _unique_titles(presets)
-        names = {title: name for name, title in titles.items()}
-        chosen = gui.add_dropdown(
+        self._titles = _unique_titles(presets)
+        self._preset: Any = gui.add_dropdown(
             "Preset",
-            tuple(names),
-            initial_value=titles[preset],
+            tuple(self._titles.values()),
+            initial_value=self._titles[preset],
             hint="A vehicle on a road to start from; all parameters follow",
         )
-        chosen.on_update(by_user(lambda event: wishes.load(names[event.target.value]), wishes.fail))
+        self._preset.on_update(by_user(lambda event: wishes.load(self._named(event.target.value)), wishes.fail))
         self.status = gui.add_html("")
         self._controls: dict[str, Control] = {}
         for parameter in PARAMETERS:
             if parameter.what_if:
                 self._controls[parameter.key] = Control(gui, parameter, _value(config, parameter), wishes)
-        reset = gui.add_button_group("Parameters", ("Reset",), hint="All parameters as in the preset (R)")
-        reset.on_click(by_user(lambda event: wishes.reset(), wishes.fail))
+        steps = gui.add_button_group(
+            "Parameters",
+            ("Undo", "Redo", "Reset"),
+            hint="Undo the last change (Ctrl+Z), redo it (Ctrl+Shift+Z), or all parameters as in the preset (R)",
+        )
+        acts = {"Undo": wishes.undo, "Redo": wishes.redo, "Reset": wishes.reset}
+        steps.on_click(by_user(lambda event: acts[event.target.value](), wishes.fail))
         self.middle = gui.add_folder(None)  # for other controls, between the sliders and the folders
         for group in GROUPS:
             rest = [parameter for parameter in PARAMETERS if parameter.group == group and not parameter.what_if]
@@ -238,6 +256,20 @@ class ControlPanel:
                     self._controls[parameter.key] = Control(gui, parameter, _value(config, parameter), wishes)
         self.show(config)
 
+    def offer(self, presets: Mapping[str, Config], chosen: str) -> None:
+        """Offer these presets, `chosen` as the one that is used."""
+        titles = _unique_titles(presets)
+        if titles != self._titles:
+            self._titles = titles
+            self._preset.options = tuple(titles.values())
+        if self._preset.value != titles[chosen]:
+            self._preset.value = titles[chosen]
+
+    def _named(self, title: str) -> str:
+        """The name of the preset with this title. Raises KeyError."""
+        names = {title: name for name, title in self._titles.items()}
+        return names[title]
+
     def __getitem__(self, key: str) -> Control:
         return self._controls[key]
 
@@ -246,6 +278,7 @@ class ControlPanel:
         with_track = config.vehicle.imaginary_wheels.enabled
         for key, control in self._controls.items():
             applies = control.parameter.applies_to(config.road.type)
+            control.describe(config.parameter(key))
             if applies:
                 (control.widen if key in touched else control.show)(config.value(key))
             control.enable(applies and (with_track or not key.startswith(IMAGINARY) or key == IMAGINARY_SWITCH))
@@ -264,11 +297,11 @@ def _unique_titles(presets: Mapping[str, Config]) -> dict[str, str]:
     }
 
 
-def refusal(fault: Fault, given: Any) -> str:
-    """A fault in the words and units of the panel."""
-    parameter = PARAMETER.get(fault.path)
-    if parameter is None:
+def refusal(fault: Fault, given: Any, config: Config) -> str:
+    """A fault in the words of the panel, and in the units that the configuration gives it."""
+    if fault.path not in PARAMETER:
         return f"{fault}."
+    parameter = config.parameter(fault.path)
     if not isinstance(given, int | float) or not math.isfinite(given):
         return f"{parameter.label}: {fault.value} is not allowed. Give {allowed(parameter)}."
     if parameter.low <= given <= parameter.high:

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import viser
 
 from app.callbacks import by_user
+from app.exports_panel import PICTURE
 from app.view_panel import VIEWS
+
+if TYPE_CHECKING:
+    from app.desk import Desk
 
 LONG_STEP = 10  # steps
 
@@ -21,13 +25,23 @@ class Keys(Protocol):
 
     def step(self, steps: int) -> None: ...
 
+    def toggle_driving(self) -> None: ...
+
+    def restart_drive(self) -> None: ...
+
     def reset(self) -> None: ...
+
+    def undo(self) -> None: ...
+
+    def redo(self) -> None: ...
+
+    def ask(self, kind: str, act: Callable[[Desk], None]) -> None: ...
 
     def toggle_switch(self, switch: str) -> None: ...
 
     def set_view(self, view: str) -> None: ...
 
-    def take_picture(self) -> None: ...
+    def export(self, what: str) -> None: ...
 
     def fail(self, error: Exception) -> None: ...
 
@@ -44,9 +58,14 @@ def add_keys(gui: viser.GuiApi, keys: Keys) -> None:
         ("One step back", "arrowleft", None, partial(keys.step, -1)),
         ("Ten steps on", "arrowright", "shift", partial(keys.step, LONG_STEP)),
         ("Ten steps back", "arrowleft", "shift", partial(keys.step, -LONG_STEP)),
+        ("Drive on and on, or back to the run", "D", None, keys.toggle_driving),
+        ("Restart the drive", "D", "shift", keys.restart_drive),
         ("Reset all parameters", "R", None, keys.reset),
+        ("Undo the last change", "Z", "cmd/ctrl", keys.undo),
+        ("Redo the change", "Z", "cmd/ctrl+shift", keys.redo),
+        ("Pin this run as the baseline", "B", None, partial(keys.ask, "baseline", lambda desk: desk.pin())),
         ("Follow the vehicle, or not", "F", None, partial(keys.toggle_switch, "follow")),
-        ("Screenshot", "S", None, keys.take_picture),
+        ("Screenshot", "S", None, partial(keys.export, PICTURE)),
         *views,
     ):
         command = gui.add_command(label, hotkey=hotkey, modifier=modifier)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import viser
 from viser import _messages as messages
 
-from app.colours import Palette, Theme, rgb
+from app.colours import Colour, Palette, Theme, rgb
 from app.scene import SIDES, Poses, Scene, Snapshot
 from assets import running_gear
 from assets.hull import hull
@@ -17,6 +18,7 @@ from assets.solids import Part, glb, joined, light
 from assets.surroundings import RoadStrip, ground, shadow_faces, sky
 from model.road import Road
 
+VEHICLE = "/vehicle"  # the node above all of the vehicle's
 GROUND_BELOW = 0.55  # m from the lowest point of the road down to the ground around it
 LABELS_BELOW = 0.12  # m from the lowest point of the road down to the upper row of wheel names
 GLOW = 1.5  # of sky and ground: evens out the renderer's tone mapping, which darkens white
@@ -25,6 +27,11 @@ GLOW = 1.5  # of sky and ground: evens out the renderer's tone mapping, which da
 def update(node: viser.SceneNodeHandle, **properties: Any) -> None:
     """Set properties of a node in one message: viser's own assignment takes 0.25 ms of Python for each."""
     node._impl.api._queue_scene_message(messages.SceneNodeUpdateMessage(node.name, properties))
+
+
+def paint(lines: viser.LineSegmentsHandle, colour: Colour) -> None:
+    """Give all segments one colour: viser takes one for all only when they are made."""
+    lines.colors = np.full(lines.points.shape, light(np.array(colour)))
 
 
 class Frame:
@@ -44,11 +51,14 @@ class Frame:
 class VehicleNodes:
     """A vehicle with its load arrows and its wheels' names."""
 
-    def __init__(self, api: viser.SceneApi, scene: Scene, now: Snapshot, name: str = "/vehicle") -> None:
+    def __init__(self, api: viser.SceneApi, scene: Scene, now: Snapshot) -> None:
         layout, system = scene.layout, scene.system
-        self._api, self._name = api, name
-        self._node = api.add_frame(name, show_axes=False)
-        self._shadow = api.add_mesh_simple(f"{name}/shadow", now.shadow, shadow_faces(), color=(0, 0, 0), opacity=0.09)
+        self._api = api
+        self._wheels = system.n, system.m
+        self._node = api.add_frame(VEHICLE, show_axes=False)
+        self._shadow = api.add_mesh_simple(
+            f"{VEHICLE}/shadow", now.shadow, shadow_faces(), color=(0, 0, 0), opacity=0.09
+        )
         idler = (layout.idler.radius - layout.shoe_thickness) / layout.tyre_radius
         sizes = np.tile([1.0] * system.n + [idler], len(SIDES))
         self._batches: dict[str, viser.BatchedGlbHandle | viser.BatchedMeshHandle] = {
@@ -69,14 +79,14 @@ class VehicleNodes:
             self._batches["imaginary_arms"] = self._imaginary_arms
         s = layout.scale
         self._arrows = api.add_arrows(
-            f"{name}/arrows",
+            f"{VEHICLE}/arrows",
             now.arrows,
             (0, 0, 0),
             shaft_radius=0.022 * s,
             head_radius=0.055 * s,
             head_length=0.10 * s,
         )
-        self._labels = _labels(api, f"{name}/labels", layout)
+        self._labels = _labels(api, layout)
 
     def colour(self, palette: Palette) -> None:
         """Give arms and arrows their wheels' colours."""
@@ -101,6 +111,22 @@ class VehicleNodes:
         self._arrows.visible = arrows
         self._labels.node.visible = labels
 
+    def on_click(self, act: Callable[[int], None]) -> None:
+        """Call act(wheel), which must not block, when the user clicks a wheel; counted as in a run's arrays."""
+
+        def pick(batch: str, first: int, count: int, of_side: int) -> None:
+            async def picked(event: Any) -> None:
+                row = (event.instance_index or 0) % of_side
+                if row < count:
+                    act(first + row)
+
+            self._batches[batch].on_click(picked)
+
+        n, m = self._wheels
+        pick("road_wheels", 0, n, n + 1)  # an idler beside them
+        if m:
+            pick("imaginary_wheels", n, m, m)
+
     def remove(self) -> None:
         self._node.remove()
 
@@ -109,7 +135,7 @@ class VehicleNodes:
     ) -> viser.BatchedGlbHandle:
         """Instances of a mesh in the colours of its parts."""
         return self._api.add_batched_glb(
-            f"{self._name}/{name}", glb(parts), poses.wxyzs, poses.positions, batched_scales=sizes, lod="off"
+            f"{VEHICLE}/{name}", glb(parts), poses.wxyzs, poses.positions, batched_scales=sizes, lod="off"
         )
 
     def _plain(
@@ -117,7 +143,7 @@ class VehicleNodes:
     ) -> viser.BatchedMeshHandle:
         """Instances of a mesh that are to have a colour each."""
         return self._api.add_batched_meshes_simple(
-            f"{self._name}/{name}", *joined(parts), poses.wxyzs, poses.positions, batched_scales=sizes, lod="off"
+            f"{VEHICLE}/{name}", *joined(parts), poses.wxyzs, poses.positions, batched_scales=sizes, lod="off"
         )
 
 
@@ -171,6 +197,7 @@ class Surroundings:
         api.configure_default_lights(False)
         api.configure_environment_map(None)
         self._key = api.add_light_directional("/light/key", color=(255, 246, 232), position=(3.0, -6.0, 7.0))
+        api.add_light_directional("/light/fill", color=(214, 228, 255), intensity=0.5, position=(-4.0, 6.0, 3.0))
         self._all_round = api.add_light_hemisphere(
             "/light/sky", sky_color=(226, 236, 250), ground_color=(196, 188, 172)
         )
@@ -182,6 +209,10 @@ class Surroundings:
         self._glowing("/sky/dome", sky(theme.haze, theme.sky, theme.zenith))
         self._glowing("/ground/disc", ground(theme.ground, theme.haze))
 
+    def show(self, on: bool) -> None:
+        """Sky and ground."""
+        self._sky.node.visible = self._ground.node.visible = on
+
     def draw(self, scene: Scene, now: Snapshot) -> None:
         """Centre them on the vehicle, the ground below its road."""
         x = now.x - now.origin
@@ -192,8 +223,9 @@ class Surroundings:
         self._api.add_glb(name, glb([mesh], glow=GLOW), cast_shadow=False, receive_shadow=False)
 
 
-def _labels(api: viser.SceneApi, name: str, layout: Layout) -> Frame:
+def _labels(api: viser.SceneApi, layout: Layout) -> Frame:
     """R1… and below them I1…, under the arrows of the right side."""
+    name = f"{VEHICLE}/labels"
     frame = Frame(api, name)
     between = (np.array(layout.wheel_x)[: len(layout.links)] - layout.links).tolist()
     for letter, xs, row in (("R", layout.wheel_x, 0.0), ("I", between, 0.2 * layout.scale)):

@@ -1,4 +1,4 @@
-"""The player at the foot of the 3-D view: time slider, buttons, speed."""
+"""The player at the foot of the 3-D view: run or drive, time slider, buttons, speed."""
 
 from __future__ import annotations
 
@@ -7,11 +7,15 @@ from typing import Any, Protocol
 import viser
 
 from app.callbacks import by_user
+from app.driving import DriveState
 from app.playback import NORMAL_SPEED, SPEEDS, STEP, Playback
 
-HEIGHT = 148  # px
+HEIGHT = 172  # px
 GAP = 14  # px to the lower edge of the view
 START, BACK, PLAY, PAUSE, ON = "|◀", "◀ Step", "▶ Play", "❚❚ Pause", "Step ▶"
+ANEW, GO = "|◀ Restart", "▶ Drive on"
+RUN, DRIVE = "Run", "Drive"
+MARKS = {True: "●", False: "○"}  # before the mode that is on, and the other
 
 
 class Player(Protocol):
@@ -25,43 +29,95 @@ class Player(Protocol):
 
     def set_speed(self, speed: float) -> None: ...
 
+    def set_driving(self, on: bool) -> None: ...
+
+    def restart_drive(self) -> None: ...
+
     def fail(self, error: Exception) -> None: ...
 
 
 class PlaybackPanel:
-    """A floating panel that shows a Playback and passes on what the user wants of it."""
+    """A floating panel that shows a Playback or a drive, and passes on what the user wants of it."""
 
     def __init__(self, gui: viser.GuiApi, player: Player) -> None:
         self._panel = gui.add_panel()
         with self._panel.add_tab("Playback"):
+            self._mode: Any = gui.add_button_group(
+                "Mode",
+                _modes(False),
+                hint="Run: a stretch of road, computed anew at each change. Drive: on and on in real time; changes act "
+                "on the moving vehicle (key D).",
+            )
             self._time: Any = gui.add_slider("Time, s", 0.0, 1.0, STEP, 0.0, hint="Where in the run we are")
+            self._driven: Any = gui.add_text(
+                "Driven",
+                "",
+                disabled=True,
+                visible=False,
+                hint="Time and distance since the start, and how fast the drive is compared with real time: what this "
+                "machine reaches may be less than what is asked for.",
+            )
             self._buttons: Any = gui.add_button_group(
-                "Playback", _buttons(True), hint="Space plays and pauses, ← and → step, with Shift ten steps"
+                "Playback",
+                _buttons(False, True),
+                hint="Space plays and pauses; ← and → step by 0.01 s, with Shift by 0.1 s",
             )
             speed = gui.add_dropdown(
-                "Speed", tuple(SPEEDS), initial_value=NORMAL_SPEED, hint="Of the playback; 1× is real time"
+                "Time scale",
+                tuple(SPEEDS),
+                initial_value=NORMAL_SPEED,
+                hint="How fast time passes; 1× is real time. A larger one shows more in less time, up to what this "
+                "machine can compute.",
             )
         self._time.on_update(by_user(lambda event: player.scrub(event.target.value), player.fail))
         speed.on_update(by_user(lambda event: player.set_speed(SPEEDS[event.target.value]), player.fail))
         acts = {
             START: lambda: player.scrub(0.0),
             BACK: lambda: player.step(-1),
-            PLAY: player.toggle,
-            PAUSE: player.toggle,
             ON: lambda: player.step(1),
-        }
+            ANEW: player.restart_drive,
+        } | dict.fromkeys((PLAY, PAUSE, GO), player.toggle)
         self._buttons.on_click(by_user(lambda event: acts[event.target.value](), player.fail))
+        self._mode.on_click(by_user(lambda event: player.set_driving(event.target.value.endswith(DRIVE)), player.fail))
 
     def place(self, x: int, width: int) -> None:
         """Float at the foot of the view, px from its left edge."""
         self._panel.float(x=x, y=-GAP, width=width, height=HEIGHT)
 
     def show(self, playback: Playback) -> None:
-        """Say what the playback does."""
+        """Say what the playback of a run does."""
+        self._show_mode(False, playback.playing)
         self._time.max = max(playback.duration, STEP)
         self._time.value = round(playback.time, 2)
-        self._buttons.options = _buttons(playback.playing)
+
+    def show_drive(self, playback: Playback, state: DriveState | None) -> None:
+        """Say how far the drive has come."""
+        self._show_mode(True, playback.playing)
+        self._driven.value = "starting…" if state is None else driven_text(state, playback)
+
+    def _show_mode(self, driving: bool, playing: bool) -> None:
+        self._mode.options = _modes(driving)
+        self._time.visible, self._driven.visible = not driving, driving
+        self._buttons.options = _buttons(driving, playing)
 
 
-def _buttons(playing: bool) -> tuple[str, ...]:
+def driven_text(state: DriveState, playback: Playback) -> str:
+    """ "1:23 · 347 m · 0.99× of 1× real time"."""
+    minutes, seconds = divmod(int(state.time), 60)
+    where = f"{minutes}:{seconds:02d} · {state.distance:.0f} m"
+    asked = f"{playback.speed:g}× real time"
+    if state.ended:
+        return f"{where} · ended"
+    if not playback.playing:
+        return f"{where} · paused"
+    return f"{where} · {asked}" if state.factor is None else f"{where} · {state.factor:.2f}× of {asked}"
+
+
+def _buttons(driving: bool, playing: bool) -> tuple[str, ...]:
+    if driving:
+        return ANEW, PAUSE if playing else GO
     return START, BACK, PAUSE if playing else PLAY, ON
+
+
+def _modes(driving: bool) -> tuple[str, ...]:
+    return f"{MARKS[not driving]} {RUN}", f"{MARKS[driving]} {DRIVE}"

@@ -1,109 +1,128 @@
-"""The plots of one browser tab: uPlot charts in a docked panel. New data leave zoom and hidden curves alone."""
+"""The plots of one browser tab and what is read beside them: tabs in a docked panel.
+
+Loads and Ride follow every run. Spectrum, Load map and Trust cost more than a drag may take: they follow, one at a
+time, when no newer run has come for CALM.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import suppress
+from time import monotonic
 from typing import Any
 
 import viser
 
-from app.plots import Plot, with_cursor
+from app.about import about_html
+from app.charts import Charts
+from app.colours import wheel_palette
+from app.load_map import load_map
+from app.plot_page import marks_html, now_html, plot_page
+from app.plots import load_plots
+from app.ride_plots import ride_plots
 from app.screen import chart_height
+from app.spectrum_plot import Mark, marks_table, named, spectrum_plot
+from app.trust import errata_html, trust_html
+from model.equilibrium import NoEquilibriumError
+from model.spectrum import marks
+from model.trajectory import Trajectory
 
-FONT = "11px system-ui, sans-serif"
-PALE = "80"  # opacity of a baseline's curve, as the last byte of its colour
-CURSOR_COLOUR = {False: "#0008", True: "#fff9"}
-TICKS: viser.uplot.Axis_Ticks = {"size": 4, "width": 1}
-NUDGE = 1e-9  # s. A chart misses a new size that comes with new data, and works out its axes when the range changes.
-PADDING = (14, 18, 0, 0)  # px; less on top would cut the highest tick's label
+CALM = 0.3  # s
 
 
 class PlotPanel:
-    """Charts below each other in a container (a tab) of `gui`."""
+    """Tabs in a panel of `gui`. `runs_tab` is left empty, for others to fill."""
 
-    def __init__(self, gui: viser.GuiApi, container: Any, page_height: int, dark: bool) -> None:
-        self._gui, self._container, self._dark = gui, container, dark
-        self._plots: tuple[Plot, ...] = ()
-        self._charts: list[viser.GuiUplotHandle] = []
-        self._page_height = page_height
-        self._nudge = 0.0
+    def __init__(self, gui: viser.GuiApi, panel: Any, page_height: int, dark: bool) -> None:
+        self._page_height, self._dark = page_height, dark
+        self._run: Trajectory | None = None
+        self._baseline: Trajectory | None = None
+        self._driving = False
+        self._wheel: int | None = None
+        self._shown_at = 0.0  # monotonic s
+        self._behind: list[Callable[[Trajectory], None]] = []  # tabs that do not show the present run yet
         self.time = 0.0  # of the time cursor, s
+        loads, ride, spectrum = (panel.add_tab(name) for name in ("Loads", "Ride", "Spectrum"))
+        load_tab, self.runs_tab, trust, about = (panel.add_tab(name) for name in ("Load map", "Runs", "Trust", "About"))
+        self._loads, self._ride, self._spectrum = Charts(gui, loads), Charts(gui, ride), Charts(gui, spectrum)
+        with spectrum:
+            self._marks = gui.add_html("")
+            self._marks_table = gui.add_html("", order=float("inf"))
+        with load_tab:
+            self._map = gui.add_html("")
+        with trust:
+            self._trust = gui.add_html("")
+            gui.add_html(errata_html())
+        with about:
+            gui.add_html(about_html())
+        with loads:
+            gui.add_html(plot_page())
+            self._now = gui.add_html(now_html(0.0))
 
-    def show(self, plots: tuple[Plot, ...], time: float) -> None:
-        """Show these plots with the time cursor at `time`, s. Charts are made anew only when their curves change."""
-        same = [plot.layout for plot in plots] == [plot.layout for plot in self._plots]
-        self._plots, self.time = plots, time
-        if same:
-            self._send()
-        else:
-            self._make()
+    def show(self, run: Trajectory, baseline: Trajectory | None, time: float, *, driving: bool = False) -> None:
+        """Show a run, beside its baseline, with the time cursor at `time`, s.
+
+        driving: the run is the latest stretch of an endless drive.
+        """
+        self._run, self._baseline, self._driving = run, baseline, driving
+        self._shown_at = monotonic()
+        self._behind = [self._show_spectrum, self._show_map, self._show_trust]
+        self._plot()
+        self.point_at(time)
+
+    def settle(self) -> None:
+        """Bring one more tab up to date when the run has been shown for a while. To be called every now and then."""
+        if self._run is not None and self._behind and monotonic() - self._shown_at > CALM:
+            self._behind.pop(0)(self._run)
 
     def point_at(self, time: float) -> None:
         """Move the time cursor, s."""
         if time != self.time:
             self.time = time
-            self._send()
+            self._now.content = now_html(time)
+
+    def single_out(self, wheel: int | None) -> None:
+        """Let a wheel, in the model's order, stand alone among faded ones; None: all of them as they are."""
+        if wheel != self._wheel:
+            self._wheel = wheel
+            self._plot()
 
     def set_page_height(self, page_height: int) -> None:
         """Make the charts fill a page of this height, px."""
         self._page_height = page_height
-        for chart in self._charts:
-            chart.height = self._height
+        self._plot()
+        self._behind = self._behind or [self._show_spectrum]
 
     def set_dark(self, dark: bool) -> None:
-        """Colours of the next plots that are shown."""
+        """Change all colours."""
         self._dark = dark
-        self._plots = ()
+        self._plot()
+        self._behind = self._behind or [self._show_spectrum]
 
-    @property
-    def _height(self) -> int:
-        return chart_height(self._page_height, len(self._plots))
+    def _plot(self) -> None:
+        """What follows every run."""
+        if self._run is None:
+            return
+        run = self._run
+        palette = wheel_palette(run.system.n, run.system.m, self._dark)
+        wheel = self._wheel if self._wheel is not None and self._wheel < len(palette.wheels) else None
+        for charts, plots in (
+            (self._loads, load_plots(run, palette, self._baseline, wheel)),
+            (self._ride, ride_plots(run, palette, self._baseline, wheel)),
+        ):
+            charts.show(plots, chart_height(self._page_height, len(plots)))
 
-    def _send(self) -> None:
-        self._nudge = NUDGE - self._nudge
-        for chart, plot in zip(self._charts, self._plots, strict=True):
-            times, *values = with_cursor(plot, self.time)
-            times[-1] += self._nudge
-            chart.data = (times, *values)
+    def _show_spectrum(self, run: Trajectory) -> None:
+        found: tuple[Mark, ...] = ()
+        with suppress(NoEquilibriumError):
+            found = named(marks(run.config))
+        colour = wheel_palette(1, 0, self._dark).hull
+        plot = spectrum_plot(run, colour, found, self._baseline)
+        self._spectrum.show((plot,), chart_height(self._page_height, 2))
+        self._marks.content, self._marks_table.content = marks_html(found), marks_table(found)
 
-    def _make(self) -> None:
-        for chart in self._charts:
-            chart.remove()
-        with self._container:
-            self._charts = [self._chart(plot) for plot in self._plots]
+    def _show_map(self, run: Trajectory) -> None:
+        self._map.content = load_map(run, self._baseline)
 
-    def _chart(self, plot: Plot) -> viser.GuiUplotHandle:
-        times: viser.uplot.Series = {"label": "Time"}
-        curves: list[viser.uplot.Series] = []
-        for curve in plot.curves:
-            if curve.baseline:
-                curves.append({"label": f"{curve.label} base", "stroke": curve.colour + PALE, "dash": (4, 3)})
-            else:
-                curves.append({"label": curve.label, "stroke": curve.colour})
-            curves[-1] |= {"width": 1.5, "points": {"show": False}}
-        cursor: viser.uplot.Series = {
-            "label": "Now",
-            "class": "now",
-            "scale": "now",
-            "stroke": CURSOR_COLOUR[self._dark],
-            "width": 1.5,
-            "points": {"show": False},
-        }
-        low, high = plot.least
-        margin = {"pad": 0.1, "mode": 1}  # mode 1: up to the soft limit at least
-        upright: viser.uplot.Axis = {"size": 40, "font": FONT, "ticks": TICKS, "grid": {"width": 1}}
-        along: viser.uplot.Axis = {"size": 24, "font": FONT, "ticks": TICKS, "grid": {"width": 1}}
-        named: viser.uplot.Axis = {"labelFont": FONT, "labelSize": 16, "labelGap": 0}
-        return self._gui.add_uplot(
-            with_cursor(plot, self.time),
-            (times, *curves, cursor),
-            title=plot.title,
-            scales={
-                "x": {"time": False},
-                "y": {"range": {"min": margin | {"soft": low}, "max": margin | {"soft": high}}},
-                "now": {"range": (0.0, 1.0)},
-            },
-            axes=(along | named | {"label": "Time, s"}, upright | named | {"label": plot.unit}),
-            cursor={"sync": {"key": "trackride"}, "y": False, "points": {"size": 5}},
-            height=self._height,
-            padding=PADDING,
-        )
+    def _show_trust(self, run: Trajectory) -> None:
+        self._trust.content = trust_html(run, self._driving)

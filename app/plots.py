@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 
+from app.colours import Palette
 from model.trajectory import Trajectory
 
-BUCKETS = 500  # stretches of time, each drawn by its smallest and its largest value: more than a plot is wide
+BUCKETS = 400  # stretches of time, each drawn by its smallest and its largest value: about as many as pixels
 DECIMALS = 2  # of the values that are plotted and read
-BEYOND = 1.0  # how far outside its 0…1 scale the time cursor starts and ends, so that only its upright shows
+TIME = "Time, s"
 
 
 @dataclass(frozen=True)
@@ -20,55 +22,134 @@ class Curve:
 
     label: str
     colour: str  # CSS
-    baseline: bool = False  # of the run compared with: drawn pale and dashed
+    kind: Literal["run", "baseline", "static"] = "run"  # of this run, of the one compared with, load at rest
+    wheel: int | None = None  # in the model's order; None: of the whole vehicle
+    faded: bool = False  # another wheel is singled out
 
 
 @dataclass(frozen=True)
 class Plot:
-    """Curves over one time axis."""
+    """Curves over one axis."""
 
     title: str
     unit: str
     curves: tuple[Curve, ...]
-    least: tuple[float, float]  # range of the unit that is always in view
-    time: np.ndarray  # (K,) s, rising
-    values: np.ndarray  # (K, curves), in the unit
+    least: tuple[float, float] | None  # range of the unit that is always in view
+    x: np.ndarray = field(compare=False)  # (K,) rising, in the axis's unit
+    values: np.ndarray = field(compare=False)  # (K, curves), in the unit; NaN where a baseline has ended
+    axis: str = TIME
 
     @property
-    def layout(self) -> tuple[str, str, tuple[Curve, ...]]:
-        """All that is not data: plots with the same layout differ in their data only."""
-        return self.title, self.unit, self.curves
+    def data(self) -> tuple[np.ndarray, ...]:
+        """For uPlot: x and one array for each curve; at least one point."""
+        if not len(self.x):
+            return tuple(np.zeros((1 + len(self.curves), 1)))
+        return (self.x, *np.ascontiguousarray(self.values.T))
 
 
 def load_plots(
-    run: Trajectory, colours: Sequence[str], hull_colour: str, baseline: Trajectory | None = None
+    run: Trajectory, palette: Palette, baseline: Trajectory | None = None, wheel: int | None = None
 ) -> tuple[Plot, ...]:
-    """Normal load of road wheels and of imaginary wheels, kN, and vertical acceleration of the hull, m/s².
+    """Normal load of road wheels and of imaginary wheels, kN, and the imaginary wheels' share of it, %.
 
-    colours: one for each wheel of the run, road wheels first. A vehicle without imaginary wheels has no plot of
-    theirs. A baseline adds its curves, one for each wheel that the run has too.
+    A baseline adds its curves, one for each wheel that the run has too. A wheel that is singled out leaves the others
+    faded. A dotted line marks the load at rest: of that wheel, or the wheels' mean. A vehicle without imaginary wheels
+    has no plots of theirs.
     """
     n, m = run.system.n, run.system.m
-    plots = []
-    for title, unit, least, names, shades, values in (
-        ("Normal load of road wheels", "kN", (0.0, 1.0), _names("R", n), colours[:n], _road_loads),
-        ("Normal load of imaginary wheels", "kN", (0.0, 1.0), _names("I", m), colours[n:], _imaginary_loads),
-        ("Vertical acceleration of the hull", "m/s²", (-0.5, 0.5), ["Hull"], [hull_colour], _acceleration),
-    ):
-        if names:
-            curves = [Curve(name, shade) for name, shade in zip(names, shades, strict=True)]
-            columns = values(run)
-            if baseline is not None:
-                other = values(baseline)[:, : len(names)].T
-                curves += [Curve(curve.label, curve.colour, baseline=True) for curve in curves[: len(other)]]
-                columns = np.column_stack([columns, *(np.interp(run.t, baseline.t, column) for column in other)])
-            time, columns = thin(run.t, columns)
-            plots.append(Plot(title, unit, tuple(curves), least, time, np.round(columns, DECIMALS)))
+    families = [("Normal load of road wheels", wheel_curves("R", palette.road, 0, wheel), _road_loads)]
+    if m:
+        families += [("Normal load of imaginary wheels", wheel_curves("I", palette.imaginary, n, wheel), _other_loads)]
+    plots = [
+        time_plot(title, "kN", (0.0, 1.0), curves, values, run, baseline, at_rest=_at_rest(run, curves, palette.hull))
+        for title, curves, values in families
+    ]
+    if m:
+        share = [Curve("Share", palette.hull)]
+        plots += [time_plot("Load carried by imaginary wheels", "%", (0.0, 1.0), share, _share, run, baseline)]
     return tuple(plots)
 
 
-def _names(letter: str, count: int) -> list[str]:
-    return [f"{letter}{i + 1}" for i in range(count)]
+def wheel_curves(letter: str, colours: Sequence[str], first: int, single: int | None) -> list[Curve]:
+    """A curve for each wheel of a family whose first is number `first`; faded when another wheel is singled out."""
+    return [
+        Curve(f"{letter}{i + 1}", colour, wheel=first + i, faded=single not in (None, first + i))
+        for i, colour in enumerate(colours)
+    ]
+
+
+def time_plot(
+    title: str,
+    unit: str,
+    least: tuple[float, float] | None,
+    curves: list[Curve],
+    values: Callable[[Trajectory], np.ndarray],
+    run: Trajectory,
+    baseline: Trajectory | None = None,
+    at_rest: tuple[float, Curve] | None = None,
+    decimals: int = DECIMALS,
+) -> Plot:
+    """A plot over time. values: run -> (N, C), a column for each curve; at_rest: a dotted line and its height."""
+    columns = [values(run)]
+    finite = np.isfinite(columns[0]).all(axis=1)
+    if baseline is not None and len(baseline.t):
+        others = values(baseline)[:, : len(curves)]
+        curves = curves + [
+            Curve(curve.label, curve.colour, "baseline", curve.wheel, curve.faded)
+            for curve in curves[: others.shape[1]]
+        ]
+        columns += [at_times(run.t, baseline.t, others)]
+    time, thinned = run.t, np.hstack(columns)
+    if not finite.all():
+        time, thinned = time[finite], thinned[finite]
+    time, thinned = thin(time, thinned)
+    if at_rest is not None:
+        height, line = at_rest
+        curves = [*curves, line]
+        thinned = np.column_stack([thinned, np.full(len(time), height)])
+    return Plot(title, unit, tuple(curves), least, time, np.round(thinned, decimals))
+
+
+def at_times(t: np.ndarray, own: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """(N, C) values of another run, sampled at `own` times, at times t; NaN after its end."""
+    if np.array_equal(t, own):
+        return values
+    columns = np.column_stack([np.interp(t, own, column) for column in values.T])
+    columns[t > own[-1]] = np.nan
+    return columns
+
+
+def thin(x: np.ndarray, values: np.ndarray, buckets: int = BUCKETS) -> tuple[np.ndarray, np.ndarray]:
+    """(K,) and (K, C) with K ≤ 2·buckets that look like the (N,) and (N, C) given.
+
+    Each bucket of samples leaves two: of every column the smallest and the largest value, so that no peak is lost; the
+    smallest first where the bucket rises from its first sample to its last. They stand at its first and last x.
+    """
+    count = len(x)
+    if count <= 2 * buckets:
+        return x, values
+    size = -(-count // buckets)
+    full = -(-count // size)
+    # The last bucket is filled up with the last sample.
+    padded = np.concatenate([values, np.repeat(values[-1:], full * size - count, axis=0)])
+    bucketed = padded.reshape(full, size, -1)
+    low, high = bucketed[:, 0].copy(), bucketed[:, 0].copy()
+    for k in range(1, size):
+        np.minimum(low, bucketed[:, k], out=low)
+        np.maximum(high, bucketed[:, k], out=high)
+    rises = bucketed[:, 0] <= bucketed[:, -1]
+    pairs = np.stack([np.where(rises, low, high), np.where(rises, high, low)], axis=1)
+    first = np.arange(full) * size
+    ends = np.stack([first, np.minimum(first + size, count) - 1], axis=1)
+    return x[ends].ravel(), pairs.reshape(2 * full, -1)
+
+
+def _at_rest(run: Trajectory, curves: list[Curve], colour: str) -> tuple[float, Curve]:
+    """Load at rest, kN, of the family's wheel that is singled out, in its colour, or the wheels' mean in `colour`."""
+    clear = [curve for curve in curves if not curve.faded]
+    loads = [run.static_load[curve.wheel] for curve in clear or curves if curve.wheel is not None]
+    shade = clear[0].colour if len(clear) == 1 else colour
+    return float(np.mean(loads)) / 1e3, Curve("at rest", shade, "static", faded=not clear)
 
 
 def _road_loads(run: Trajectory) -> np.ndarray:
@@ -76,55 +157,13 @@ def _road_loads(run: Trajectory) -> np.ndarray:
     return run.normal_load[:, : run.system.n] / 1e3
 
 
-def _imaginary_loads(run: Trajectory) -> np.ndarray:
+def _other_loads(run: Trajectory) -> np.ndarray:
     """(N, m), kN."""
     return run.normal_load[:, run.system.n :] / 1e3
 
 
-def _acceleration(run: Trajectory) -> np.ndarray:
-    """(N, 1), m/s²."""
-    return run.a[:, run.system.chassis, 1:2]
-
-
-def thin(time: np.ndarray, values: np.ndarray, buckets: int = BUCKETS) -> tuple[np.ndarray, np.ndarray]:
-    """(K,) times and (K, C) values with K ≤ 2·buckets that look like the (N,) and (N, C) given.
-
-    Each bucket of samples leaves two: of every column the smallest and the largest value, in the order in which they
-    came, so that no peak is lost. They stand at the bucket's first and last time. Samples that are not finite are
-    left out.
-    """
-    finite = np.isfinite(values).all(axis=1)
-    time, values = time[finite], values[finite]
-    count = len(time)
-    if count <= 2 * buckets:
-        return time, values
-    size = -(-count // buckets)
-    full = -(-count // size)
-    # The last bucket is filled up with the last sample.
-    index = np.minimum(np.arange(full * size), count - 1).reshape(full, size)
-    bucketed = values[index]  # (full, size, C)
-    first_is_low = bucketed.argmin(axis=1) <= bucketed.argmax(axis=1)
-    low, high = bucketed.min(axis=1), bucketed.max(axis=1)
-    pairs = np.stack([np.where(first_is_low, low, high), np.where(first_is_low, high, low)], axis=1)
-    return time[index[:, [0, -1]]].ravel(), pairs.reshape(2 * full, -1)
-
-
-def with_cursor(plot: Plot, time: float) -> tuple[np.ndarray, ...]:
-    """Data for uPlot: times, one array for each curve, and the time cursor's.
-
-    The cursor is a curve on a scale of its own, 0…1: below it everywhere but at `time`, where it runs upright through
-    the whole plot. The other curves are interpolated there.
-    """
-    if not len(plot.time):
-        empty = np.zeros(1)
-        return (empty, *(empty for _ in plot.curves), empty - BEYOND)
-    time = float(np.clip(time, plot.time[0], plot.time[-1]))
-    at = int(np.searchsorted(plot.time, time))
-    before = max(at - 1, 0)
-    step = plot.time[min(at, len(plot.time) - 1)] - plot.time[before]
-    part = (time - plot.time[before]) / step if step > 0 else 0.0
-    here = (1 - part) * plot.values[before] + part * plot.values[min(at, len(plot.time) - 1)]
-    columns = np.insert(plot.values, [at] * 3, here, axis=0).T
-    cursor = np.full(columns.shape[1], -BEYOND)
-    cursor[at + 1] = 1 + BEYOND
-    return (np.insert(plot.time, [at] * 3, time), *np.ascontiguousarray(columns), cursor)
+def _share(run: Trajectory) -> np.ndarray:
+    """(N, 1), % of all wheels' load; 0 with all in the air."""
+    total = run.normal_load.sum(axis=1)
+    imaginary = run.normal_load[:, run.system.n :].sum(axis=1)
+    return 100 * (imaginary / np.where(total > 0, total, 1.0))[:, None]

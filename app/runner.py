@@ -1,4 +1,5 @@
-"""From the latest wish to a finished run: one thread, a slot for the wish, a slot for each kind of outcome, no queue.
+"""From the latest wish to a finished run, or to a drive that follows the wishes: one thread, a slot for the wish, a
+slot for each kind of outcome, no queue.
 
 A newer wish replaces an older one that nobody has begun, and stops a run that has long to go. Outcomes come in the
 order of their wishes; one that nobody has taken is replaced by the next of its kind.
@@ -12,6 +13,7 @@ from dataclasses import dataclass, field, replace
 from time import monotonic
 from typing import Any, Protocol
 
+from app.driving import FRAME, Driver, DriveState
 from model.config import Config
 from model.equilibrium import NoEquilibriumError
 from model.parameters import PARAMETERS
@@ -30,6 +32,7 @@ class Wish:
     base: Config
     changes: Mapping[str, Any] = field(default_factory=dict)
     number: int = 0
+    touched: frozenset[str] = frozenset()  # what the user has just moved, and may still be moving
 
     def changed(self, key: str, value: Any) -> Wish:
         """The same with one more change; what contradicts it goes."""
@@ -37,7 +40,7 @@ class Wish:
         if key == "road.type":
             rivals |= {parameter.key for parameter in PARAMETERS if not parameter.applies_to(str(value))}
         changes = {other: given for other, given in self.changes.items() if other not in rivals}
-        return replace(self, changes={**changes, key: value})
+        return replace(self, changes={**changes, key: value}, touched=self.touched | {key})
 
     def config(self) -> Config:
         """The configuration wished for. Raises ConfigError."""
@@ -77,7 +80,20 @@ class Failed:
     message: str
 
 
-Outcome = Finished | Refused | Failed
+@dataclass(frozen=True)
+class Driven:
+    """The drive has come so far."""
+
+    wish: Wish
+    state: DriveState
+
+    @property
+    def trajectory(self) -> Trajectory:
+        """Its last seconds."""
+        return self.state.past
+
+
+Outcome = Finished | Refused | Failed | Driven
 
 
 class Simulate(Protocol):
@@ -89,7 +105,10 @@ class Simulate(Protocol):
 
 
 class Runner:
-    """Runs the latest wish. `on_outcome` is called, on the runner's thread, when an outcome can be taken."""
+    """Runs the latest wish, or drives on with it.
+
+    `on_outcome` is called, on the runner's thread, when an outcome can be taken.
+    """
 
     def __init__(
         self,
@@ -106,6 +125,9 @@ class Runner:
         self._progress = 0.0  # of the run under way, 0…1
         self._began_at: float | None = None  # monotonic s; None: no run under way
         self._shown_at = 0.0  # when the last run finished
+        self._speed: float | None = None  # of the drive, times real time; 0: it stands; None: no drive
+        self._anew = False  # the drive is to start from rest
+        self._rolls = False  # there is a drive, and it has not come to an end
         self._closed = False
         self._thread = threading.Thread(target=self._work, name="trackride-runner", daemon=True)
         self._thread.start()
@@ -123,6 +145,18 @@ class Runner:
                 return False
             self._wish = replace(instead, number=refused.number)
             return True
+
+    def drive(self, speed: float | None, anew: bool = False) -> None:
+        """Drive on without end at this speed, times real time (0: stand), or with None go back to runs.
+
+        anew: from rest.
+        """
+        with self._condition:
+            if speed is None and self._speed is not None:
+                self._wish = replace(self._wish, number=self._wish.number + 1)  # is to be run
+            self._anew |= anew or self._speed is None
+            self._speed = speed
+            self._condition.notify()
 
     @property
     def latest(self) -> Wish:
@@ -149,18 +183,27 @@ class Runner:
     def _work(self) -> None:
         while True:
             with self._condition:
-                self._condition.wait_for(lambda: self._closed or self._wish.number > self._begun)
+                self._condition.wait_for(
+                    lambda: self._closed or self._speed is not None or self._wish.number > self._begun
+                )
                 if self._closed:
                     return
-                wish = self._wish
-                self._begun, self._progress, self._began_at = wish.number, 0.0, monotonic()
-            outcome = self._outcome_of(wish)
-            self._began_at = None
-            if outcome is not None:
-                self._shown_at = monotonic()
-                with self._condition:
-                    self._outcomes[type(outcome)] = outcome
-                self._on_outcome()
+                driving, wish = self._speed is not None, self._wish
+                if not driving:
+                    self._begun, self._progress, self._began_at = wish.number, 0.0, monotonic()
+            if driving:
+                self._drive_on()
+            else:
+                outcome = self._outcome_of(wish)
+                self._began_at = None
+                if outcome is not None:
+                    self._shown_at = monotonic()
+                    self._publish(outcome)
+
+    def _publish(self, outcome: Outcome) -> None:
+        with self._condition:
+            self._outcomes[type(outcome)] = outcome
+        self._on_outcome()
 
     def _outcome_of(self, wish: Wish) -> Outcome | None:
         """None when the run was stopped for a newer wish, or at closing."""
@@ -180,10 +223,53 @@ class Runner:
         self._progress = part
 
     def _should_stop(self) -> bool:
-        if self._closed:
+        if self._closed or self._speed is not None:
             return True
         if self._wish.number == self._begun or self._progress >= NEARLY_DONE:
             return False
         now = monotonic()
         overdue = now - self._shown_at > PATIENCE
         return not overdue or now - (self._began_at or now) > LONGEST
+
+    def _drive_on(self) -> None:
+        """Frame by frame, until there is to be no drive any more."""
+        driver: Driver | None = None
+        good = self._wish
+        self._rolls = False
+        while True:
+            with self._condition:
+                if driver is not None and not self._has_to_drive():
+                    driver.stand()
+                self._condition.wait_for(self._has_to_drive)
+                if self._closed or self._speed is None:
+                    return
+                wish, speed = self._wish, self._speed
+                changed, anew = wish.number > self._begun, self._anew
+                self._begun, self._anew = wish.number, False
+            began = monotonic()
+            try:
+                if changed or anew or driver is None:
+                    config = wish.config()
+                    if anew or driver is None:
+                        driver = Driver(config)
+                    driver.change(config)
+                    good = wish
+                state = driver.frame(speed)
+                self._rolls = not state.ended
+                self._publish(Driven(good, state))
+            except ConfigError as error:
+                self._publish(Refused(wish, error.faults))
+            except NoEquilibriumError as error:
+                driver, self._rolls = None, False
+                self._publish(Failed(wish, str(error)))
+            except Exception as error:
+                driver, self._rolls = None, False
+                self._on_error(error)
+            with self._condition:
+                self._condition.wait_for(
+                    lambda: self._closed or self._speed is None, timeout=max(FRAME - (monotonic() - began), 0.0)
+                )
+
+    def _has_to_drive(self) -> bool:
+        rolls = self._rolls and self._speed != 0.0
+        return self._closed or self._speed is None or rolls or self._anew or self._wish.number > self._begun

@@ -18,6 +18,7 @@ import numpy as np
 
 from assets.layout import Layout, layout_of
 from assets.surroundings import AHEAD, BEHIND, TILES, shadow
+from model.live import REBASE
 from model.road import Road, build_road
 from model.trajectory import Trajectory
 from model.vehicle import System
@@ -28,6 +29,7 @@ ARC = np.linspace(0.0, 1.0, 9)  # where the track's path has points along its ar
 SHARPEST_HOLLOW = 2.0  # rad: a belt that turns by more goes clockwise around a wheel
 NO_LOAD = 1e-3  # m of arrow for a wheel without load: its head stays in the ground
 GRAIN = 0.02  # m between the heights of a ground line
+FADE = 15.0  # m over which the ground goes over into a level where no road is laid
 
 
 class Poses(NamedTuple):
@@ -35,6 +37,24 @@ class Poses(NamedTuple):
 
     positions: np.ndarray
     wxyzs: np.ndarray
+
+
+class Travel(NamedTuple):
+    """Heights of the road wheels' centres over the hull's foot point, in the hull's frame, m; (n,) each."""
+
+    lowest: np.ndarray
+    highest: np.ndarray
+    static: np.ndarray
+
+
+class Contacts(NamedTuple):
+    """Where the W wheels of one side meet the road, or would, and with what."""
+
+    points: np.ndarray  # (W, 2) x in the view's frame and height, m
+    normals: np.ndarray  # (W, 2) from the road to the wheel's centre
+    load: np.ndarray  # (W,) N
+    traction: np.ndarray  # (W,) N, along the road, forward
+    per_newton: float  # m of arrow
 
 
 class Snapshot(NamedTuple):
@@ -50,6 +70,7 @@ class Snapshot(NamedTuple):
     imaginary_arms: Poses  # 2 m
     shoes: Poses  # of both tracks
     arrows: np.ndarray  # (2 W, 2, 3) foot at the contact point and tip, normal loads
+    contacts: Contacts
     shadow: np.ndarray  # (V, 3) vertices of the vehicle's shadow on the road
 
 
@@ -69,6 +90,19 @@ class GroundLine:
         x = np.arange(first, last + 25.0, GRAIN)  # with something to spare for the next run
         return GroundLine(road, x, road.height(x))
 
+    @staticmethod
+    def of_laid(road: Road, like: GroundLine | None = None) -> GroundLine:
+        """The whole line of a road that is laid for a stretch only, level beyond; `like`, if it is of this road."""
+        if like is not None and like.road is road:
+            return like
+        first, last = road.profile.pieces[0].nodes[0], road.profile.pieces[-1].nodes[-1]
+        x = np.arange(np.ceil(first / GRAIN), np.floor(last / GRAIN) + 1) * GRAIN
+        heights = road.height(x)
+        level = [np.median(heights)]
+        return GroundLine(
+            road, np.concatenate([[first - FADE], x, [last + FADE]]), np.concatenate([level, heights, level])
+        )
+
     def height(self, x: np.ndarray) -> np.ndarray:
         return np.interp(x, self.x, self.heights)
 
@@ -82,6 +116,8 @@ class Scene:
     layout: Layout
     places: Places
     ground: GroundLine
+    passed: float = 0.0  # m by which the origin of a drive has moved along
+    before: Travel | None = None  # of a drive, until now
 
     @cached_property
     def load_scale(self) -> float:
@@ -97,13 +133,31 @@ class Scene:
         """
         return 0.05 * float(np.floor(self.ground.heights.min() / 0.05 + 0.1))
 
+    @cached_property
+    def load_top(self) -> float:
+        """N: the end of the colour scale of loads, twice an even share of the weight on each road wheel."""
+        return 4 * self.layout.radius / self.load_scale
+
+    @cached_property
+    def travel(self) -> Travel:
+        """How far the road wheels have moved in the hull."""
+        run, chassis = self.trajectory, self.system.chassis
+        wheels = run.q[:, self.system.road_wheels, :2] - run.q[:, chassis, None, :2]
+        pitch = run.q[:, chassis, 2, None]
+        height = np.cos(pitch) * wheels[..., 1] - np.sin(pitch) * wheels[..., 0] - self.places.on_hull[0].imag
+        now = Travel(height.min(axis=0), height.max(axis=0), height[0])
+        if self.before is None:
+            return now
+        low, high, static = self.before
+        return Travel(np.minimum(low, now.lowest), np.maximum(high, now.highest), static)
+
     def at(self, time: float, arrow_scale: float = 1.0, origin: float | None = None) -> Snapshot:
         """The instant `time`, s, between samples in proportion; before the start or after the end, these.
 
         arrow_scale: times the default length of the arrows; origin: of the view, x on the road, m.
         """
         places = self.places
-        q, load = self._between(time)
+        q, load, traction = self._between(time)
         x, pitch = float(q[0, 0]), float(q[0, 2])
         origin = x if origin is None else origin
         contacts, normals, _ = self.ground.road.nearest(q[self.system.wheel, :2])
@@ -111,10 +165,10 @@ class Scene:
         # Bodies of the model, then what is fixed to the hull or turns with the track
         point = q[:, 0] - origin + 1j * q[:, 1]
         point = np.concatenate([point, point[0] + places.on_hull * cmath.rect(1.0, pitch)])
-        angle = np.concatenate([q[:, 2], pitch - x * places.turns])
+        angle = np.concatenate([q[:, 2], pitch - (x + self.passed) * places.turns])
 
         # The track, lifted out of the ground
-        pins = places.pins(track_path(point[places.circled], places.radii), x, origin)
+        pins = places.pins(track_path(point[places.circled], places.radii), x + self.passed, origin + self.passed)
         shadow = places.shadow.copy()
         shadow[:, 0] += x - origin
         ground = self.ground.height(np.concatenate([pins.real, shadow[:, 0]]) + origin)
@@ -123,7 +177,8 @@ class Scene:
         shoe, chord = (pins[1:] + pins[:-1]) / 2, np.angle(pins[1:] - pins[:-1])
 
         arrows = places.arrows.copy()
-        length = np.maximum(load * (self.load_scale * arrow_scale), NO_LOAD)
+        per_newton = self.load_scale * arrow_scale
+        length = np.maximum(load * per_newton, NO_LOAD)
         contacts[:, 0] -= origin
         arrows[:, :, 0, ::2] = contacts
         arrows[:, :, 1, ::2] = contacts + length[:, None] * normals
@@ -131,18 +186,24 @@ class Scene:
         poses = places.poses(
             np.concatenate([point[places.body], shoe, shoe]), np.concatenate([angle[places.body], chord, chord])
         )
-        return Snapshot(x, origin, arrows=arrows.reshape(-1, 2, 3), shadow=shadow, **poses)
+        touch = Contacts(contacts, normals, load, traction, per_newton)
+        return Snapshot(x, origin, arrows=arrows.reshape(-1, 2, 3), contacts=touch, shadow=shadow, **poses)
 
-    def _between(self, time: float) -> tuple[np.ndarray, np.ndarray]:
-        """q (B, 3) and normal loads (W,) at a time."""
+    def bodies(self, time: float) -> np.ndarray:
+        """q (B, 3) of all bodies at a time, s."""
+        return self._between(time)[0]
+
+    def _between(self, time: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """q (B, 3), normal loads (W,) and tractions (W,) at a time."""
         run = self.trajectory
         last = len(run.t) - 1
-        sample = min(max(time * run.config.simulation.output_rate, 0.0), last)
+        sample = min(max((time - run.t[0]) * run.config.simulation.output_rate, 0.0), last)
         k = min(int(sample), last - 1) if last else 0
-        q, load, part = run.q[k], run.normal_load[k], sample - k
+        part = sample - k
         if part == 0.0:
-            return q.copy(), load
-        return q + part * (run.q[k + 1] - q), load + part * (run.normal_load[k + 1] - load)
+            return run.q[k].copy(), run.normal_load[k], run.traction[k]
+        q, load, traction = (a[k] + part * (a[k + 1] - a[k]) for a in (run.q, run.normal_load, run.traction))
+        return q, load, traction
 
 
 class Places:
@@ -228,6 +289,27 @@ def build_scene(trajectory: Trajectory, like: Scene | None = None) -> Scene:
     same = like.trajectory.config.road == config.road
     ground = GroundLine.along(like.ground.road if same else build_road(config), first, last, like.ground)
     return Scene(trajectory, system, layout, like.places, ground)
+
+
+def live_scene(recent: Trajectory, road: Road, like: Scene | None = None) -> Scene:
+    """The scene of the last moments of a drive (model/live.py) on the road about it; 30 a second are cheap.
+
+    like: the scene before this one. Where the drive's origin has moved along since, `passed` says by how much.
+    """
+    x = float(recent.q[-1, 0, 0])
+    ground = GroundLine.of_laid(road, like.ground if like else None)
+    if like is None:
+        layout = layout_of(recent.system)
+        return Scene(recent, recent.system, layout, Places(recent.system, layout), ground)
+    fell_back = like.trajectory.q[-1, 0, 0] - x
+    passed = like.passed + REBASE * round(fell_back / REBASE)
+    system, layout, places = like.system, like.layout, like.places
+    if like.trajectory.config is not recent.config:
+        system, layout = recent.system, layout_of(recent.system)
+    if layout != like.layout:
+        return Scene(recent, system, layout, Places(system, layout), ground, passed)
+    before = like.travel if recent.t[0] > like.trajectory.t[0] else None
+    return Scene(recent, system, layout, places, ground, passed, before)
 
 
 def track_path(centres: np.ndarray, radii: np.ndarray) -> np.ndarray:

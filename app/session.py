@@ -17,18 +17,21 @@ from typing import Any
 
 import viser
 
-from app.export import SIZES, NoPictureError, file_name, take_picture
+from app.desk import Desk
+from app.history import first_wish
 from app.playback import Playback
-from app.runner import Failed, Finished, Outcome, Refused, Runner, Simulate, Wish
+from app.porter import Order, Porter
+from app.runner import Driven, Failed, Finished, Outcome, Refused, Runner, Simulate, Wish
 from app.stage import Stage
 from app.window import Scene, Window
 from model.config import Config
 from model.simulate import simulate
+from model.trajectory import Trajectory
 
 VIEW_RATE = 30.0  # Hz: the 3-D view
 TEXT_RATE = 10.0  # Hz: numbers, time slider, time cursors
 REFUSAL_DELAY = 1.2  # s without another wish until a bad value is refused: time to finish typing
-PICTURE_PATIENCE = 1.0  # s to wait at closing for a picture; viser ends it when the tab is gone
+SEEN_WITHIN = 2.0  # s in which what an errand wants is drawn, or else it goes on without
 SAME_ERROR = 5.0  # s before the same error is logged and shown again
 
 log = logging.getLogger("trackride")
@@ -49,15 +52,16 @@ class Session:
         make_scene: Callable[[viser.ClientHandle, bool], Scene] = Stage,
     ) -> None:
         """presets: name -> configuration, among them `preset`; config: what to run first."""
-        self._client, self._presets = client, presets
-        self._lock = threading.Lock()  # of the next four
+        self._lock = threading.Lock()  # of the next six
         self._playback = Playback()
+        self._driving = False  # on and on, instead of a run
+        self._in_view = True  # the page is not in the background
         self._intents: dict[str, Callable[[], None]] = {}  # what the view is to do: the newest of each kind
         self._refused: Refused | None = None  # a bad wish that is not yet spoken of
         self._refuse_at = 0.0  # monotonic s
 
-        self._good: Finished | None = None  # the run that is shown
-        self._picture: threading.Thread | None = None
+        self._good: Finished | Driven | None = None  # what is shown
+        self._steps = 0  # to be redone, or undone when negative; under the lock
         self._last_error: tuple[str, float] = ("", 0.0)
         self._wake = threading.Event()
         self._closed = threading.Event()
@@ -67,6 +71,9 @@ class Session:
         except Exception:
             self._runner.close()
             raise
+        self._porter = Porter(client, self, self._window, self._intend)
+        self._desk = Desk(self._window, self._runner, presets, self._porter.remember)
+        self._porter.recollect()
         self._thread = threading.Thread(target=self._show, name="trackride-view", daemon=True)
         self._thread.start()
 
@@ -86,33 +93,79 @@ class Session:
 
     def load(self, preset: str) -> None:
         """Wish for a preset."""
-        base = self._presets[preset]
+        base = self._desk.presets[preset]
         self._runner.change(lambda wish: Wish(base))
 
     def reset(self) -> None:
         """Wish for the preset without any change."""
         self._runner.change(lambda wish: Wish(wish.base))
 
+    def undo(self) -> None:
+        with self._lock:
+            self._steps -= 1
+
+    def redo(self) -> None:
+        with self._lock:
+            self._steps += 1
+
+    def ask(self, kind: str, act: Callable[[Desk], None]) -> None:
+        """Wish for something that the desk does; of each kind the newest counts."""
+        self._intend(kind, lambda: act(self._desk))
+
     def toggle(self) -> None:
         with self._lock:
             self._playback.toggle()
+            self._pace()
 
     def step(self, steps: int) -> None:
         with self._lock:
-            self._playback.step(steps)
+            if not self._driving:
+                self._playback.step(steps)
 
     def scrub(self, time: float) -> None:
         with self._lock:
-            self._playback.scrub(time)
+            if not self._driving:
+                self._playback.scrub(time)
 
     def set_speed(self, speed: float) -> None:
         with self._lock:
             self._playback.speed = speed
+            self._pace()
+
+    def set_driving(self, on: bool) -> None:
+        """Drive on and on with the present parameters, or show their run."""
+        with self._lock:
+            self._driving, self._playback.playing = on, True
+            self._pace()
+
+    def toggle_driving(self) -> None:
+        self.set_driving(not self._driving)
+
+    def restart_drive(self) -> None:
+        """Drive from rest."""
+        with self._lock:
+            if self._driving:
+                self._playback.playing = True
+                self._pace(anew=True)
+
+    def set_in_view(self, in_view: bool) -> None:
+        """A page in the background stands still."""
+        with self._lock:
+            self._in_view = in_view
+            self._pace()
+
+    def _pace(self, anew: bool = False) -> None:
+        """Tell the runner how fast to drive, if at all. Under the lock."""
+        speed = self._playback.speed if self._playback.playing and self._in_view else 0.0
+        self._runner.drive(speed if self._driving else None, anew)
 
     def set_view(self, view: str) -> None:
         self._intend("view", lambda: self._window.scene.set_view(view))
 
-    def set_switch(self, switch: str, on: bool) -> None:
+    def pick_wheel(self, wheel: int | None) -> None:
+        self._intend("wheel", lambda: self._window.pick_wheel(wheel))
+
+    def set_switch(self, switch: str, on: bool | float) -> None:
         self._intend(switch, lambda: self._window.set_switch(switch, on))
 
     def toggle_switch(self, switch: str) -> None:
@@ -121,8 +174,48 @@ class Session:
     def set_dark(self, dark: bool) -> None:
         self._intend("dark", lambda: self._window.set_dark(dark))
 
-    def take_picture(self) -> None:
-        self._intend("picture", self._start_picture)
+    def export(self, what: str) -> None:
+        """Wish for a download: a key of the porter's."""
+        self._intend("export", lambda: self._export(what))
+
+    def cancel_export(self) -> None:
+        self._porter.stop()
+
+    def upload_configuration(self, name: str, content: bytes) -> None:
+        self._intend("configuration", lambda: self._porter.take_configuration(name, content))
+
+    def upload_run(self, name: str, content: bytes) -> None:
+        self._intend("upload", lambda: self._porter.take_run(name, content))
+
+    def edit_yaml(self) -> None:
+        self._intend("yaml", self._edit_yaml)
+
+    @property
+    def shown(self) -> Trajectory | None:
+        """The run, or the latest stretch of the drive, that is shown."""
+        match self._good:
+            case Finished(_, run):
+                return run
+            case Driven(_, state):
+                return state.past
+        return None
+
+    def show_now(self, act: Callable[[], None]) -> None:
+        """Have the view do something, and wait until it is done. For errands only."""
+        done = threading.Event()
+
+        def do() -> None:
+            act()
+            done.set()
+
+        self._intend("errand", do)
+        self._wake.set()
+        done.wait(SEEN_WITHIN)
+
+    def seek(self, time: float) -> None:
+        """Show a time of the run, and wait until it is seen. For errands only."""
+        self.scrub(time)
+        self.show_now(lambda: self._window.draw(time))
 
     def fail(self, error: Exception) -> None:
         """Log an error and tell the user."""
@@ -133,13 +226,12 @@ class Session:
             self._intend("error", lambda: self._window.report_error(error))
 
     def close(self) -> None:
-        """End all threads. Waits for them, but not for a browser that still draws a picture."""
+        """End all threads. Waits for them, but not long for a browser that still draws a picture."""
         self._closed.set()
         self._wake.set()
         self._runner.close()
+        self._porter.close()
         self._thread.join()
-        if self._picture is not None:
-            self._picture.join(PICTURE_PATIENCE)
 
     def _intend(self, kind: str, act: Callable[[], None]) -> None:
         with self._lock:
@@ -178,6 +270,14 @@ class Session:
                     time = self._playback.time
                 self._good = outcome
                 self._window.show_run(outcome, time, settled=self._runner.latest.number == wish.number)
+                self._desk.finished(outcome, monotonic())
+            case Driven(wish):
+                with self._lock:
+                    if self._refused is not None and wish.number > self._refused.wish.number:
+                        self._refused = None
+                self._good = outcome
+                self._window.show_drive(outcome, settled=self._runner.latest.number == wish.number)
+                self._desk.driven(wish, monotonic())
             case Refused():
                 with self._lock:
                     self._refused, self._refuse_at = outcome, monotonic() + REFUSAL_DELAY
@@ -187,50 +287,49 @@ class Session:
     def _draw(self, elapsed: float, with_text: bool) -> None:
         with self._lock:
             intents, self._intents = self._intents, {}
-            self._playback.advance(elapsed)
+            steps, self._steps = self._steps, 0
+            driving = self._driving
+            if self._in_view and not driving:
+                self._playback.advance(elapsed)
             playback = replace(self._playback)
             refused = self._refused if monotonic() >= self._refuse_at else None
             if refused is not None:
                 self._refused = None
         for act in intents.values():
             self._attempt(act)
+        if steps:
+            self._desk.go(steps)
         if refused is not None and self._good is not None and self._runner.withdraw(refused.wish, self._good.wish):
             self._window.refuse(refused, self._good.trajectory.config)
         self._window.draw(playback.time)
         if with_text:
-            self._window.show_time(playback)
+            self._window.show_time(playback, driving)
             self._window.show_status(self._runner.under_way())
             self._window.fit_page()
+            self._desk.tick(monotonic())
 
-    def _start_picture(self) -> None:
-        if self._picture is not None and self._picture.is_alive():
-            self._window.say("One at a time", "The browser is still drawing the last picture.")
-        elif self._good is not None:
-            size, good, background = self._window.picture_size, self._good, self._window.background
-            name = file_name(good.wish.base.name, good.wish.changes, "x".join(map(str, SIZES[size])), ".png")
-            self._picture = threading.Thread(
-                target=self._send_picture,
-                args=(*SIZES[size], background, name),
-                name="trackride-picture",
-                daemon=True,
-            )
-            self._picture.start()
+    def _export(self, what: str) -> None:
+        run, exports = self.shown, self._window.exports
+        if self._good is None or run is None or not len(run.t):
+            return
+        with self._lock:
+            time, playing = self._playback.time, self._playback.playing
+        self._porter.send(
+            what,
+            Order(
+                wish=self._good.wish,
+                run=run,
+                baseline=self._desk.baseline,
+                size=exports.size,
+                transparent=exports.transparent,
+                background=self._window.background,
+                dark=self._window.dark,
+                time=time,
+                playing=playing,
+            ),
+        )
 
-    def _send_picture(self, width: int, height: int, background: str, name: str) -> None:
-        try:
-            picture = take_picture(self._client, width, height, background)
-            self._client.send_file_download(name, picture, save_immediately=True)
-        except NoPictureError as error:
-            log.info("no picture: %s", error)
-            message = str(error)
-            self._intend("said", lambda: self._window.say("No picture", message))
-        except Exception as error:
-            self.fail(error)
-
-
-def first_wish(base: Config, config: Config) -> Wish:
-    """The wish for `config` as changes to `base`, so that a reset leads back to that."""
-    before, after = base.values(), config.values()
-    changes = {key: value for key, value in after.items() if before.get(key) != value}
-    wish = Wish(base, changes)
-    return wish if wish.config() == config else Wish(config)
+    def _edit_yaml(self) -> None:
+        run = self.shown
+        if run is not None:
+            self._window.exports.edit_yaml(run.config)

@@ -1,4 +1,4 @@
-"""The page's look and keys: theme, a few rules of CSS, and which keys move the camera no more."""
+"""The page's look and keys: theme, a few rules of CSS, which keys move the camera no more, and whether it is seen."""
 
 from __future__ import annotations
 
@@ -8,33 +8,46 @@ BRAND = (28, 108, 178)
 
 # Only wishes: without them everything works and can be read. The picture that cannot be loaded runs its line once:
 # viser turns and moves the camera with some of our keys, wherever they are pressed, a slider included.
+# IN_VIEW stands for the hidden checkbox that a page in the background takes its tick from. No :has() in the rules:
+# with it the browser takes eight times as long over each change of the page, and many come in a second.
 PAGE = """<img hidden src="data:," onerror="
+  this.parentElement.dataset.trackride = 'page';
+  this.parentElement.parentElement.dataset.trackride = 'panel';
   if (!document.body.dataset.trackride) {
     document.body.dataset.trackride = 'keys';
     document.body.addEventListener('keydown', (event) => {
       if (event.target.role === 'slider' && event.key.startsWith('Arrow')) event.stopPropagation();
     });
     document.documentElement.addEventListener('keydown', (event) => {
-      if (['ArrowLeft', 'ArrowRight', 'KeyS'].includes(event.code)) event.stopPropagation();
+      if (['ArrowLeft', 'ArrowRight', 'KeyD', 'KeyS'].includes(event.code)) event.stopPropagation();
+    });
+    document.addEventListener('visibilitychange', () => {
+      const box = document.getElementById(document.getElementById('trackride-style')?.dataset.inView);
+      if (box && box.checked === document.hidden) box.click();
     });
   }">
-<style id="trackride-style">
-  :has(> #trackride-style) ~ * div:has(> p > label[for]) { width: 9.6em !important; }
-  :has(> #trackride-style) ~ .mantine-Paper-root div:has(> p > label[for]) { width: 8.96em !important; }
-  :has(> #trackride-style) ~ * p:has(> label[for]) { letter-spacing: -0.3px !important; font-size: 0.8em !important; }
+<style id="trackride-style" data-in-view="IN_VIEW">
+  [data-trackride="page"] + div { display: none; }
+  [data-trackride="panel"] div[style*="flex-shrink: 0"] { width: 9.6em !important; }
+  [data-trackride="panel"] .mantine-Paper-root div[style*="flex-shrink: 0"] { width: 8.96em !important; }
+  [data-trackride="panel"] div[style*="flex-shrink: 0"] > p { letter-spacing: -0.3px !important;
+    font-size: 0.8em !important; }
+  [data-trackride="panel"] > .mantine-Paper-root { margin-bottom: 1.15em !important; }
   .trackride-status { font-size: 0.8em; line-height: 1.5; padding: 0 0.8em 0.5em; white-space: nowrap;
     overflow: hidden; text-overflow: ellipsis; color: var(--mantine-color-dimmed); }
   .trackride-status b { font-weight: 550; color: var(--mantine-color-text); }
   .trackride-status .bad { color: var(--mantine-color-red-7); }
-  :has(> #trackride-style) ~ .mantine-Paper-root { margin-bottom: 1.15em !important; }
-  .uplot .u-legend { text-align: left !important; padding-left: 46px !important; margin-top: -0.3em; }
-  .uplot .u-legend th::after { content: "" !important; }
-  .uplot .u-legend .u-value { min-width: 2.9em; text-align: left; padding-left: 0.3em; }
-  .uplot .u-legend .u-series:first-child, .uplot .u-legend .now { display: none; }
-  body:not(:has(.uplot:hover)) .u-legend .u-value { visibility: hidden; }
 </style>"""
 
 
 def apply_theme(gui: viser.GuiApi, dark: bool) -> None:
     """Colours of the page. No logo, and no share button: it would let any visitor open a public tunnel."""
     gui.configure_theme(dark_mode=dark, brand_color=BRAND, show_logo=False, show_share_button=False)
+
+
+def add_page(gui: viser.GuiApi) -> viser.GuiCheckboxHandle:
+    """Add rules and keys. The checkbox, which nobody sees, is ticked while the page is in view."""
+    page = gui.add_html("")
+    in_view = gui.add_checkbox("In view", True)
+    page.content = PAGE.replace("IN_VIEW", in_view._impl.uuid)
+    return in_view

@@ -1,4 +1,4 @@
-"""Folders for the 3-D view and for pictures of it."""
+"""The folder for the 3-D view."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import Any, Protocol
 import viser
 
 from app.callbacks import by_user
-from app.export import SIZES
+from app.load_colours import RAMP
+from app.marks import TRACTION_SCALE
 
 VIEWS = {
     "Side": "side",
@@ -16,11 +17,27 @@ VIEWS = {
     "Front": "front",
     "Wheel": "wheel",
 }  # shown -> the stage's name
-SWITCHES = {  # attribute of the stage -> label, hint
-    "follow": ("Follow vehicle", "The camera moves along with the vehicle (F)"),
-    "show_arrows": ("Load arrows", "Normal load of each wheel, as long as it is large"),
-    "show_labels": ("Wheel names", "R1… road wheels, I1… imaginary wheels, front first"),
+SWITCHES = {  # attribute of the stage -> label, whether it is on at first, hint
+    "follow": ("Follow vehicle", True, "The camera moves along with the vehicle (F)"),
+    "show_arrows": ("Load arrows", True, "Normal load f_n of each wheel, as long as it is large"),
+    "show_static_load": ("Static loads", True, "A tick across each arrow: where it ends at rest on flat ground"),
+    "show_traction": (
+        "Traction arrows",
+        False,
+        f"Force f_t along the road, {TRACTION_SCALE:g} × the loads' scale",
+    ),
+    "show_in_air": ("Wheels in the air", True, "A red ring around each wheel that has left the ground"),
+    "show_load_colours": ("Load colours", False, "A ring on each wheel in the colour of its normal load"),
+    "show_travel": (
+        "Travel",
+        False,
+        "A bar beside each road wheel: how far it moves in the hull; long mark: at rest",
+    ),
+    "show_labels": ("Wheel names", True, "R1… road wheels, I1… imaginary wheels, front first"),
+    "show_scale_bar": ("Scale bar", True, "One metre, under the rear of the vehicle"),
+    "show_grid": ("Grid", False, "Half metres and metres on a wall behind the vehicle; heights from level ground"),
 }
+ARROW_SCALE = 0.25, 4.0, 0.25  # least, most, step
 
 
 class Viewer(Protocol):
@@ -28,44 +45,57 @@ class Viewer(Protocol):
 
     def set_view(self, view: str) -> None: ...
 
-    def set_switch(self, attribute: str, on: bool) -> None: ...
+    def set_switch(self, attribute: str, on: bool | float) -> None: ...
 
     def set_dark(self, dark: bool) -> None: ...
-
-    def take_picture(self) -> None: ...
 
     def fail(self, error: Exception) -> None: ...
 
 
 class ViewPanel:
-    """Two folders in the present container of `gui`."""
+    """A folder in the present container of `gui`."""
 
     def __init__(self, gui: viser.GuiApi, dark: bool, viewer: Viewer) -> None:
         with gui.add_folder("View", expand_by_default=False):
             views = gui.add_button_group("Look from", tuple(VIEWS), hint="Keys 1, 2, 3, 4")
             self._switches: dict[str, Any] = {
-                attribute: gui.add_checkbox(label, True, hint=hint) for attribute, (label, hint) in SWITCHES.items()
+                attribute: gui.add_checkbox(label, on, hint=hint) for attribute, (label, on, hint) in SWITCHES.items()
             }
+            scale = gui.add_slider(
+                "Arrow length",
+                *ARROW_SCALE,
+                initial_value=1.0,
+                hint="Of all force arrows; at 1 an even share of the weight is as high as a road wheel",
+            )
+            self._load_scale = gui.add_html("", visible=False)
             night = gui.add_checkbox("Dark", dark, hint="Dark colours for the whole page")
-        with gui.add_folder("Picture", expand_by_default=False):
-            self._size = gui.add_dropdown("Size", tuple(SIZES), hint="Pixels, width × height")
-            picture = gui.add_button("Screenshot", hint="The 3-D view as a PNG file (S)", icon=viser.Icon.CAMERA)
         views.on_click(by_user(lambda event: viewer.set_view(VIEWS[event.target.value]), viewer.fail))
         for attribute, box in self._switches.items():
             box.on_update(by_user(_switching(viewer, attribute), viewer.fail))
+        scale.on_update(by_user(_switching(viewer, "arrow_scale"), viewer.fail))
         night.on_update(by_user(lambda event: viewer.set_dark(event.target.value), viewer.fail))
-        picture.on_click(by_user(lambda event: viewer.take_picture(), viewer.fail))
 
-    @property
-    def size(self) -> str:
-        """The chosen size of pictures, a key of SIZES."""
-        return self._size.value
+    def show_load_scale(self, top: float | None) -> None:
+        """What the wheels' colours mean, from 0 to `top`, N; None: they mean nothing."""
+        self._load_scale.visible = top is not None
+        if top is not None:
+            self._load_scale.content = load_scale(top)
 
     def toggle(self, attribute: str) -> bool:
         """Turn a switch over; its new state."""
         box = self._switches[attribute]
         box.value = not box.value
         return box.value
+
+
+def load_scale(top: float) -> str:
+    """HTML of the ramp of load colours up to `top`, N, with its ticks."""
+    ticks = "".join(f"<span>{share * top / 1e3:.0f}</span>" for share in (0.0, 0.25, 0.5, 0.75, 1.0))
+    return (
+        '<div style="padding: 0 0.8em 0.5em; font-size: 0.8em">Normal load, kN'
+        f'<div style="height: 0.8em; background: linear-gradient(to right, {", ".join(RAMP)})"></div>'
+        f'<div style="display: flex; justify-content: space-between">{ticks}</div></div>'
+    )
 
 
 def _switching(viewer: Viewer, attribute: str) -> Callable[[Any], None]:

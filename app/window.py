@@ -8,18 +8,24 @@ from typing import Any, Protocol
 
 import viser
 
+from app.callbacks import by_user
 from app.colours import wheel_palette
 from app.controls import ControlPanel, Wishes, refusal
+from app.driving import DriveState
+from app.exports_panel import Exporter, ExportsPanel
 from app.keys import Keys, add_keys
 from app.playback import Playback
 from app.playback_panel import PlaybackPanel, Player
 from app.plot_panel import PlotPanel
-from app.plots import load_plots
-from app.runner import Failed, Finished, Refused
+from app.runner import Driven, Failed, Finished, Refused
+from app.runs_panel import Keeping, RunsPanel
 from app.screen import LEFT, Layout, Screen
-from app.style import PAGE, apply_theme
+from app.style import add_page, apply_theme
 from app.view_panel import Viewer, ViewPanel
-from model.config import Config
+from app.wheel_card import Picker, WheelCard
+from model.config import Config, ConfigError
+from model.ride import WheelState
+from model.road import Road
 from model.trajectory import Trajectory
 
 BUSY_DELAY = 0.2  # s before a run is called under way: quick ones are not worth a flicker
@@ -35,17 +41,32 @@ class Scene(Protocol):
     show_arrows: bool
     show_labels: bool
 
+    show_surroundings: bool
+
     def show(self, trajectory: Trajectory) -> None: ...
 
+    def show_live(self, recent: Trajectory, road: Road) -> None: ...
+
     def draw(self, time: float) -> None: ...
+
+    def show_ghost(self, trajectory: Trajectory | None) -> None: ...
+
+    def on_pick(self, act: Callable[[int], None]) -> None: ...
+
+    def wheel_state(self, wheel: int) -> WheelState | None: ...
+
+    @property
+    def load_top(self) -> float | None: ...
 
     def set_view(self, name: Any) -> None: ...
 
     def set_dark(self, dark: bool) -> None: ...
 
 
-class Actions(Wishes, Player, Viewer, Keys, Protocol):
+class Actions(Wishes, Player, Viewer, Picker, Keeping, Exporter, Keys, Protocol):
     """What the panels ask of the session."""
+
+    def set_in_view(self, in_view: bool) -> None: ...
 
 
 class Window:
@@ -63,6 +84,8 @@ class Window:
     ) -> None:
         self._client, self._dark = client, dark
         self._run: Trajectory | None = None
+        self._baseline: Trajectory | None = None
+        self._drive: DriveState | None = None  # the last of the drive that is shown
         self._drawn: tuple[int, float] | None = None  # run and time that the 3-D view shows
         self._run_number = 0
         self._notices: dict[str, viser.NotificationHandle] = {}
@@ -74,30 +97,35 @@ class Window:
             gui.set_panel_label("Trackride")
             gui.main_panel.dock_left()
             gui.main_panel.set_width(LEFT)
-            gui.add_html(PAGE)
+            in_view = add_page(gui)
+            in_view.on_update(by_user(lambda event: actions.set_in_view(event.target.value), actions.fail))
             self._controls = ControlPanel(gui, presets, preset, config, actions)
             with self._controls.middle:
                 self._view = ViewPanel(gui, dark, actions)
+                self.exports = ExportsPanel(gui, actions)
             self._plots_panel = gui.add_panel()
-            self._plots = PlotPanel(gui, self._plots_panel.add_tab("Loads"), layout.page_height, dark)
+            self._plots = PlotPanel(gui, self._plots_panel, layout.page_height, dark)
+            self.runs = RunsPanel(gui, self._plots.runs_tab, actions)
             self._plots_panel.dock_right()
             self._player = PlaybackPanel(gui, actions)
             self._resize(layout)
             add_keys(gui, actions)
+            self._card = WheelCard(gui, actions)
         self.scene = make_scene(client, dark)
+        self.scene.on_pick(actions.pick_wheel)
 
     # ── Runs ──
 
     def show_run(self, done: Finished, time: float, *, settled: bool) -> None:
         """Show a finished run at `time`, s. settled: no newer wish is on its way, so that the controls may follow."""
         run = done.trajectory
-        self._run, self._run_number = run, done.wish.number
+        self._run, self._run_number, self._drive = run, done.wish.number, None
         self._plot(time)
         self._client.flush()
         self.scene.show(run)
         self._drawn = None
         if settled:
-            self._controls.show(run.config, touched=done.wish.changes)
+            self._controls.show(run.config, touched=done.wish.touched)
         if run.complete:
             self._forget("diverged")
         else:
@@ -105,9 +133,38 @@ class Window:
             self._notify("diverged", "The run did not come to its end", body, "orange", stays=True)
         self._forget("refused")
 
+    def show_drive(self, driven: Driven, *, settled: bool) -> None:
+        """Show how far the drive has come; the plots only when there is something new for them."""
+        before, self._drive = self._drive, driven.state
+        state = driven.state
+        if before is None or before.past is not state.past:
+            self._run = state.past
+            self._plot(state.time)
+            self._client.flush()
+        self.scene.show_live(state.recent, state.road)
+        self.scene.draw(state.time)
+        if settled and (before is None or before.config != state.config):
+            self._controls.show(state.config, touched=driven.wish.touched)
+        if state.ended:
+            body = f"{state.ended[0].upper()}{state.ended[1:]}. {state.advice} Then press Restart."
+            self._notify("diverged", "The drive came to an end", body, "orange", stays=True)
+        else:
+            self._forget("diverged")
+
+    def show_baseline(self, baseline: Trajectory | None) -> None:
+        """Compare with this run from now on, or with None no more."""
+        self._baseline = baseline
+        if self._run is not None:
+            self._plot(self._plots.time)
+        self.scene.show_ghost(baseline)
+
+    def show_presets(self, presets: Mapping[str, Config], chosen: str) -> None:
+        """Offer these presets, `chosen` as the one that is used."""
+        self._controls.offer(presets, chosen)
+
     def refuse(self, refused: Refused, instead: Config) -> None:
         """Say what is wrong with a wish, and go back to the configuration that was good."""
-        body = " ".join(refusal(fault, refused.wish.changes.get(fault.path)) for fault in refused.faults)
+        body = " ".join(refusal(fault, refused.wish.changes.get(fault.path), instead) for fault in refused.faults)
         self._notify("refused", "Not possible", body, "red")
         self._controls.show(instead)
 
@@ -124,7 +181,9 @@ class Window:
 
     def show_status(self, under_way: tuple[int, float, float] | None) -> None:
         """Say which run is shown, or how far the next is (number, part done, seconds so far)."""
-        if under_way is not None and (under_way[2] > BUSY_DELAY or self._run is None):
+        if self._drive is not None:
+            self._controls.status.content = status_line("Drive", "changes act at once")
+        elif under_way is not None and (under_way[2] > BUSY_DELAY or self._run is None):
             number, part, seconds = under_way
             doing = FIRST_START if part == 0 and seconds > SLOW_START else f"computing… {100 * part:.0f} %"
             self._controls.status.content = status_line(f"Run {number}", doing)
@@ -141,14 +200,21 @@ class Window:
 
     def draw(self, time: float) -> None:
         """The 3-D view at a time, s."""
-        if self._run is not None and self._drawn != (self._run_number, time):
+        if self._drive is None and self._run is not None and self._drawn != (self._run_number, time):
             self.scene.draw(time)
             self._drawn = (self._run_number, time)
 
-    def show_time(self, playback: Playback) -> None:
+    def show_time(self, playback: Playback, driving: bool) -> None:
         """Player and time cursors."""
-        self._player.show(playback)
-        self._plots.point_at(playback.time)
+        if driving:
+            self._player.show_drive(playback, self._drive)
+        else:
+            self._player.show(playback)
+            if self._drive is None:
+                self._plots.point_at(playback.time)
+        self._plots.settle()
+        self._show_wheel()
+        self._view.show_load_scale(self.scene.load_top)
 
     # ── Looks ──
 
@@ -163,12 +229,24 @@ class Window:
         self._dark = dark
         apply_theme(self._client.gui, dark)
         self._plots.set_dark(dark)
-        if self._run is not None:
-            self._plot(self._plots.time)
         self.scene.set_dark(dark)
 
-    def set_switch(self, switch: str, on: bool) -> None:
-        """Turn something of the 3-D view on or off."""
+    def pick_wheel(self, wheel: int | None) -> None:
+        """Show a wheel's card and its curve alone; None, or the wheel that is picked already: no wheel's."""
+        self._plots.single_out(self._card.pick(wheel))
+        self._show_wheel()
+
+    def _show_wheel(self) -> None:
+        wheel = self._card.wheel
+        state = self.scene.wheel_state(wheel) if wheel is not None else None
+        if wheel is not None and state is not None and self._run is not None:
+            palette = wheel_palette(self._run.system.n, self._run.system.m, self._dark)
+            self._card.show(state, palette.wheels[wheel])
+        elif wheel is not None:
+            self.pick_wheel(None)
+
+    def set_switch(self, switch: str, on: bool | float) -> None:
+        """Turn something of the 3-D view on or off, or set its size."""
         setattr(self.scene, switch, on)
         self._drawn = None
 
@@ -176,9 +254,13 @@ class Window:
         """Turn a switch of the 3-D view over, and its checkbox."""
         self.set_switch(switch, self._view.toggle(switch))
 
+    def show_surroundings(self, on: bool) -> None:
+        """Sky and ground."""
+        self.scene.show_surroundings = on
+
     @property
-    def picture_size(self) -> str:
-        return self._view.size
+    def dark(self) -> bool:
+        return self._dark
 
     @property
     def background(self) -> str:
@@ -192,6 +274,22 @@ class Window:
     def say(self, title: str, body: str) -> None:
         self._notify("said", title, body, "blue")
 
+    def show_faults(self, title: str, faults: ConfigError) -> None:
+        """All that is wrong with a configuration from outside."""
+        self.exports.show_faults(title, faults)
+
+    def show_progress(self, doing: str) -> None:
+        """What is being made for a download; empty: nothing."""
+        notice = self._notices.get("progress")
+        if not doing:
+            self._forget("progress")
+        elif notice is not None:
+            notice.body = doing
+        else:
+            self._notices["progress"] = self._client.add_notification(
+                "One moment", doing, loading=True, with_close_button=False, auto_close_seconds=None
+            )
+
     def _resize(self, layout: Layout) -> None:
         self._plots_panel.set_width(layout.right)
         self._plots.set_page_height(layout.page_height)
@@ -199,8 +297,7 @@ class Window:
 
     def _plot(self, time: float) -> None:
         assert self._run is not None
-        palette = wheel_palette(self._run.system.n, self._run.system.m, self._dark)
-        self._plots.show(load_plots(self._run, palette.wheels, palette.hull), time)
+        self._plots.show(self._run, self._baseline, time, driving=self._drive is not None)
 
     def _notify(self, kind: str, title: str, body: str, color: Any, stays: bool = False) -> None:
         """One notification of each kind: a newer one takes the older one's place."""

@@ -13,6 +13,8 @@ import numpy as np
 
 from model.vehicle import System
 
+PAPER_RADIUS = 0.32  # m, of the wheels of the paper's vehicle
+
 
 class Circle(NamedTuple):
     x: float
@@ -31,8 +33,8 @@ class Layout:
 
     @property
     def scale(self) -> float:
-        """How much larger than the paper's vehicle, whose wheels have 0.32 m."""
-        return self.radius / 0.32
+        """How much larger than the paper's vehicle, by its wheels."""
+        return self.radius / PAPER_RADIUS
 
     def at_scale_one(self) -> Layout:
         """The same vehicle at the size of the paper's."""

@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from model.parameters import PARAMETER, PARAMETERS, Value
+from model.parameters import PARAMETER, PARAMETERS, Parameter, Value
 from model.validation import EXCLUSIVE, ConfigError, Fault, check_values, unknown_fault, wheel_positions
 from model.yaml_text import dump_yaml, parse_yaml
 
@@ -196,6 +196,11 @@ class Config(Section):
         for name in path.split("."):
             found = getattr(found, name)
         return found
+
+    def parameter(self, path: str) -> Parameter:
+        """The table's row of a key, in the unit that its basis (wheel or torsion) gives it here. Raises KeyError."""
+        parameter, basis = PARAMETER[path], f"{path.rpartition('.')[0]}.basis"
+        return parameter.torsional() if basis in PARAMETER and self.value(basis) == "torsion" else parameter
 
     def values(self) -> dict[str, Value]:
         """Everything a file must say to get this configuration, by dotted path, in the table's order."""

@@ -72,7 +72,7 @@ def rest_pose(system: System) -> tuple[np.ndarray, np.ndarray]:
         )
     if np.abs(z[1:]).max() > np.pi / 2:
         raise NoEquilibriumError(
-            f"At rest a body would have turned by {np.degrees(np.abs(z[1:]).max()):.0f}°: the suspension cannot carry "
+            "At rest the hull or an arm would have turned right over: the suspension cannot carry "
             "the vehicle near its design pose. Stiffen the suspension or lower the preload of the imaginary wheels."
         )
     return _poses(system, z[0], np.bincount(rotating, z[1:], B)), (system.k_n * sink**2)[system.wheel]

@@ -128,9 +128,11 @@ class LiveDrive:
         self.config = config
         system = build_system(config)
         x = float(self._run.y[0])
+        table = self._run.road
         if config.road != old.road:
             self._join(config)
-        self._run.change(system._replace(x_0=x - system.v_ref * self._run.t), self._laid(x).table)
+            table = self._laid(x).table
+        self._run.change(system._replace(x_0=x - system.v_ref * self._run.t), table)
         return True
 
     def _join(self, config: Config) -> None:
@@ -175,7 +177,8 @@ class LiveDrive:
         ends = np.unique(np.concatenate([[0], splits, [len(nodes) - 1]]))
         pieces = [_inside(nodes[i : k + 1], derivatives) for i, k in pairwise(ends)]
         self._laid_to = high
-        return Road(Profile(pieces), radius)
+        self._road = Road(Profile(pieces), radius)
+        return self._road
 
     def advance(self, until: float) -> None:
         """Drive on to a time, s, at most CAPACITY samples away. A drive that diverged stands still."""
@@ -190,15 +193,21 @@ class LiveDrive:
             run.change(run.system, self._laid(float(run.y[0])).table)
         while run.t < until and run.advance(until) is Status.RUNNING:
             pass
-        self._past.append(run.take_samples())
+        taken = run.take_samples()
+        if len(taken[0]):
+            self._past.append(taken)
         while len(self._past) > 1 and self._past[1][0][0] < run.t - self._remembered:
             self._past.popleft()
         self._seconds += perf_counter() - began
 
-    def recent(self) -> Trajectory:
-        """The remembered past as a run; its times go on from the start, its x from the present origin."""
-        t = np.concatenate([times for times, _ in self._past])
-        samples = Samples._make(np.concatenate(parts) for parts in zip(*(kept for _, kept in self._past), strict=True))
+    def recent(self, seconds: float = np.inf) -> Trajectory:
+        """The remembered past as a run, or its last so many seconds: a little more, and cheaper than all.
+
+        Its times go on from the start, its x from the present origin.
+        """
+        past = [part for part in self._past if part[0][-1] >= self.time - seconds] or [self._past[-1]]
+        t = np.concatenate([times for times, _ in past])
+        samples = Samples._make(np.concatenate(parts) for parts in zip(*(kept for _, kept in past), strict=True))
         status, advice = "complete", ""
         if self.status is not Status.RUNNING:
             status, advice = f"diverged at t = {self.time:.4g} s: {REASON[self.status]}", ADVICE[self.status]
@@ -207,8 +216,8 @@ class LiveDrive:
         return Trajectory(t, *samples, self._static_load, self.config, status, advice, counts)
 
     def road(self) -> Road:
-        """The road about the vehicle, as far as it is laid, in the frame of `recent`."""
-        return self._laid(float(self._run.y[0]))
+        """The road about the vehicle, as far as it is laid, in the frame of `recent`; the same until more is laid."""
+        return self._road
 
     def _move_origin(self, by: float) -> None:
         run = self._run

@@ -7,7 +7,7 @@ format (SI unless the key names another unit). The order of rows is the order of
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 Kind = Literal["number", "integer", "choice", "flag", "list", "text"]
@@ -70,6 +70,14 @@ class Parameter:
         }[self.kind]
         return words + (", or a list of such numbers, front wheel first" if self.per_wheel else "")
 
+    def torsional(self) -> Parameter:
+        """The same as a rate of the torsion spring itself; what is no rate at the wheel stays as it is."""
+        if self.unit not in TORSIONAL:
+            return self
+        unit, shown = TORSIONAL[self.unit]
+        description = self.description.replace(", at the wheel", "").replace(", at that wheel", "")
+        return replace(self, unit=unit, shown=shown, description=description)
+
     def applies_to(self, road_type: str) -> bool:
         """Whether a configuration with this type of road has the key."""
         return not self.roads or road_type in self.roads
@@ -92,6 +100,10 @@ INTEGRATORS = (
     "dormand-prince", "rk4", "scipy-rk45", "scipy-dop853", "scipy-radau", "scipy-lsoda", "scipy-bdf",
 )  # fmt: skip
 KILO_N_PER_M, KILO_N_S_PER_M, MILLIMETRES = ("kN/m", 1e-3), ("kN s/m", 1e-3), ("mm", 1e3)
+TORSIONAL = {  # unit of a rate at the wheel -> unit and shown unit of the rate about the joint
+    "N/m": ("N m/rad", ("kN m/rad", 1e-3)),
+    "N s/m": ("N m s/rad", ("kN m s/rad", 1e-3)),
+}
 
 # fmt: off
 # Columns: key, label, symbol, unit, default, low, high, slider low, slider high, slider step

@@ -197,29 +197,30 @@ def _figures(trajectory: Trajectory) -> dict[tuple[_Figure, str], float]:
     return figures
 
 
-def wheel_state(trajectory: Trajectory, wheel: int, time: float) -> WheelState:
+def wheel_state(trajectory: Trajectory, wheel: int, time: float, road: Road | None = None) -> WheelState:
     """A wheel, counted from 0 with road wheels first, at a time, s; between samples in proportion.
 
-    A time outside the run gives its start or its end.
+    A time outside the run gives its start or its end. road: where it is at hand, or another than the configuration's.
     """
     system = trajectory.system
-    k = min(max(int(np.searchsorted(trajectory.t, time, side="right")) - 1, 0), max(len(trajectory.t) - 2, 0))
-    pair = slice(k, k + 2)
+    t = trajectory.t
+    before = min(max(int(np.searchsorted(t, time, side="right")) - 1, 0), len(t) - 1)
+    after = min(before + 1, len(t) - 1)
+    part = np.clip((time - t[before]) / (t[after] - t[before]), 0, 1) if after > before else 0.0
 
     def at_time(samples: np.ndarray) -> np.ndarray:
-        moments = samples[pair].reshape(len(samples[pair]), -1).T
-        return np.array([np.interp(time, trajectory.t[pair], row) for row in moments]).reshape(samples.shape[1:])
+        return (1 - part) * samples[before] + part * samples[after]
 
     q, load = at_time(trajectory.q), at_time(trajectory.normal_load)
-    touch = contact_motion(system, build_road(trajectory.config), q, at_time(trajectory.v))
+    touch = contact_motion(system, road or build_road(trajectory.config), q, at_time(trajectory.v))
     touching = touch.depth[wheel] > 0
     total = float(load.sum())
     share = float(load[wheel]) / total if total > 0 else None
     torque_share = None if system.prescribed else share
-    force = float(at_time(trajectory.drive_force[:, None])[0])
+    force = float(at_time(trajectory.drive_force))
     return WheelState(
         name=wheel_names(system)[wheel],
-        time=float(np.clip(time, trajectory.t[0], trajectory.t[-1])),
+        time=float(np.clip(time, t[0], t[-1])),
         normal_load=float(load[wheel]),
         static_load=float(trajectory.static_load[wheel]),
         load_share=share,

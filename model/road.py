@@ -88,9 +88,11 @@ def build_road(config: Config) -> Road:
 
 def _refined(nodes: np.ndarray, longest: float) -> np.ndarray:
     """The nodes, with every gap cut into equal parts no longer than asked."""
-    parts = np.maximum(1, np.ceil(np.diff(nodes) / longest).astype(int))
-    cuts = [np.linspace(a, b, part, endpoint=False) for a, b, part in zip(nodes[:-1], nodes[1:], parts, strict=True)]
-    return np.append(np.concatenate(cuts), nodes[-1])
+    gap = np.diff(nodes)
+    parts = np.maximum(1, np.ceil(gap / longest).astype(int))
+    start, size = np.repeat(nodes[:-1], parts), np.repeat(gap / parts, parts)
+    number = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)  # of the part in its gap
+    return np.append(start + number * size, nodes[-1])
 
 
 def _flat(road: configuration.FlatRoad, front_wheel: float) -> Profile:

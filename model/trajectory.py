@@ -75,21 +75,25 @@ class Trajectory:
             partial.unlink(missing_ok=True)
 
     @classmethod
-    def load(cls, path: str | Path) -> Trajectory:
-        """Read a run from .npz. Raises OSError, ValueError (not such a file) or ConfigError (its configuration)."""
-        no_run = f"{path} is not a run saved by trackride run --out"
+    def load(cls, path: str | Path | IO[bytes], name: str = "") -> Trajectory:
+        """Read a run from .npz, a file that messages call `name`.
+
+        Raises OSError, ValueError (not such a file) or ConfigError (its configuration).
+        """
+        name = name or str(path)
+        no_run = f"{name} is not a run saved by trackride run --out"
         try:
             with np.load(path, allow_pickle=False) as file:
                 arrays = {name: file[name] for name in file.files}
             counters = RunStatistics(**{f.name: arrays.pop(f.name).item() for f in fields(RunStatistics)})
-            texts = {name: str(arrays.pop(name)) for name in _TEXTS}
-            parts = {name: arrays[name] for name in _ARRAYS}
+            texts = {key: str(arrays.pop(key)) for key in _TEXTS}
+            parts = {key: arrays[key] for key in _ARRAYS}
         except (KeyError, TypeError, ValueError, EOFError, RuntimeError, BadZipFile, zlib.error) as error:
             raise ValueError(no_run) from error
-        config = parse_config(texts["config"], source=f"{path}: config")
-        for name, shape in _shapes(build_system(config), parts["t"].size).items():
-            if parts[name].shape != shape or parts[name].dtype != float or not np.isfinite(parts[name]).all():
-                raise ValueError(f"{no_run}: {name} must hold {shape} finite numbers")
+        config = parse_config(texts["config"], source=f"{name}: config")
+        for key, shape in _shapes(build_system(config), parts["t"].size).items():
+            if parts[key].shape != shape or parts[key].dtype != float or not np.isfinite(parts[key]).all():
+                raise ValueError(f"{no_run}: {key} must hold {shape} finite numbers")
         return cls(**parts, config=config, status=texts["status"], advice=texts["advice"], statistics=counters)
 
     def to_bytes(self, suffix: str) -> bytes:

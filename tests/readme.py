@@ -1,10 +1,11 @@
-"""`make readme`: puts what is generated into the README: the parameter table and the latest benchmark figures."""
+"""`make readme`: puts what is generated into the README: what was settled beyond the paper, parameters, benchmarks."""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
 
+from model.errata import errata_list
 from model.parameters import parameter_table
 
 ROOT = Path(__file__).parents[1]
@@ -28,7 +29,8 @@ def benchmark_table() -> str:
 
 def main() -> None:
     readme = ROOT / "README.md"
-    text = filled(readme.read_text(), "parameters", parameter_table())
+    text = filled(readme.read_text(), "errata", errata_list())
+    text = filled(text, "parameters", parameter_table())
     readme.write_text(filled(text, "benchmarks", benchmark_table()))
 
 

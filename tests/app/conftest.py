@@ -16,6 +16,8 @@ from websockets.sync.client import connect
 
 from app.server import Explorer
 from model.config import Config, load_config
+from model.ride import WheelState, wheel_state
+from model.road import Road
 from model.trajectory import RunStatistics, Trajectory
 from model.vehicle import build_system
 
@@ -79,8 +81,10 @@ class FakeScene:
 
     def __init__(self, client: viser.ClientHandle, dark: bool) -> None:
         self.client, self.dark = client, dark
-        self.follow = self.show_arrows = self.show_labels = True
+        self.follow = self.show_arrows = self.show_labels = self.show_surroundings = True
+        self.ghosts: list[Trajectory | None] = []
         self.runs: list[Trajectory] = []
+        self.roads: list[Road] = []  # of the drive
         self.times: list[float] = []
         self.views: list[str] = []
         self.threads: set[str] = set()
@@ -89,9 +93,24 @@ class FakeScene:
         self.runs.append(trajectory)
         self.threads.add(threading.current_thread().name)
 
+    def show_live(self, recent: Trajectory, road: Road) -> None:
+        self.runs.append(recent)
+        self.roads.append(road)
+
+    def show_ghost(self, trajectory: Trajectory | None) -> None:
+        self.ghosts.append(trajectory)
+
     def draw(self, time: float) -> None:
         self.times.append(time)
         self.threads.add(threading.current_thread().name)
+
+    def on_pick(self, act: Callable[[int], None]) -> None:
+        self.pick = act
+
+    def wheel_state(self, wheel: int) -> WheelState | None:
+        return wheel_state(self.runs[-1], wheel, self.times[-1])
+
+    load_top = None
 
     def set_view(self, name: str) -> None:
         self.views.append(name)
@@ -103,7 +122,10 @@ class FakeScene:
 class Tab:
     """A browser tab as far as the server can tell: it keeps what it is sent, and can use any control."""
 
-    def __init__(self, explorer: Explorer, width: int = 1600, height: int = 900) -> None:
+    def __init__(
+        self, explorer: Explorer, width: int = 1600, height: int = 900, storage: dict[str, str] | None = None
+    ) -> None:
+        """storage: what the browser has kept from earlier visits."""
         self._socket = connect(
             explorer.address.replace("http", "ws"),
             subprotocols=[f"viser-v{viser.__version__}"],  # type: ignore[list-item]
@@ -112,6 +134,7 @@ class Tab:
         )
         self.widgets: dict[str, dict[str, Any]] = {}  # uuid -> type, value and props
         self.notifications: list[dict[str, Any]] = []
+        self.storage: dict[str, str] = {} if storage is None else storage
         self.messages: list[dict[str, Any]] = []
         self._thread = threading.Thread(target=self._listen, daemon=True)
         self._thread.start()
@@ -175,8 +198,12 @@ class Tab:
     @property
     def status(self) -> str:
         """HTML of the line that tells the run."""
+        return self.html("trackride-status")
+
+    def html(self, part: str) -> str:
+        """The HTML, other than rules of style, that has this in it."""
         texts = [w["props"]["content"] for w in tuple(self.widgets.values()) if w["type"] == "GuiHtmlMessage"]
-        return next((text for text in texts if "trackride-status" in text and "<style" not in text), "")
+        return next((text for text in texts if part in text and "<style" not in text), "")
 
     def shows_run(self, number: int) -> bool:
         return f"<b>Run {number}</b>" in self.status and " in " in self.status
@@ -210,6 +237,15 @@ class Tab:
             self.widgets.pop(message["uuid"], None)
         elif kind.startswith("Gui") and "props" in message:
             self.widgets[message["uuid"]] = message
+        elif kind == "LocalStorageSetItemMessage":
+            self.storage[message["key"]] = message["value"]
+        elif kind == "LocalStorageGetItemRequestMessage":
+            self.send(
+                "LocalStorageGetItemResponseMessage",
+                value=self.storage.get(message["key"]),
+                error=None,
+                request_uuid=message["request_uuid"],
+            )
         elif kind == "NotificationShowMessage":
             self.notifications.append(message["props"])
 
@@ -244,8 +280,8 @@ def open_tab() -> Iterator[Callable[..., Tab]]:
     """Opens tabs, and closes those that are still open at the end."""
     tabs: list[Tab] = []
 
-    def open_it(explorer: Explorer, **size: int) -> Tab:
-        tabs.append(Tab(explorer, **size))
+    def open_it(explorer: Explorer, **browser: Any) -> Tab:
+        tabs.append(Tab(explorer, **browser))
         return tabs[-1]
 
     yield open_it

@@ -40,6 +40,10 @@ class Asked:
 
     def reset(self) -> None: ...
 
+    def undo(self) -> None: ...
+
+    def redo(self) -> None: ...
+
     def fail(self, error: Exception) -> None:
         raise error
 
@@ -157,6 +161,27 @@ def test_what_the_user_touches_is_left_alone(server: viser.ViserServer) -> None:
     assert controls["drive.speed_kmh"].value == 15
 
 
+def test_rates_of_the_torsion_bar_are_shown_in_its_units(server: viser.ViserServer) -> None:
+    controls = panel(server)
+    damping = "vehicle.road_suspension.damping"
+    controls.show(PAPER.replace({"vehicle.road_suspension.basis": "torsion"}))
+    assert controls[STIFFNESS]._one.label == "Road stiffness, kN m/rad"
+    assert "unit kN m/rad" in controls[STIFFNESS]._list.hint
+    assert "at the wheel" not in controls[STIFFNESS]._one.hint
+    assert controls[damping]._one.label == "Road damping, kN m s/rad"
+    assert controls["vehicle.imaginary_suspension.stiffness"]._one.label == "Imaginary stiffness, kN/m"
+    controls.show(PAPER)
+    assert controls[STIFFNESS]._one.label == "Road stiffness, kN/m"
+    assert controls[damping]._one.label == "Road damping, kN s/m"
+
+
+def test_a_refusal_has_the_unit_of_the_basis() -> None:
+    config = PAPER.replace({"vehicle.road_suspension.basis": "torsion"})
+    with pytest.raises(ConfigError) as caught:
+        config.replace({STIFFNESS: 1.0})
+    assert refusal(caught.value.faults[0], 1.0, config).endswith("Give 0.01 to 100000 kN m/rad.")
+
+
 def test_presets_with_the_same_title_can_be_told_apart(server: viser.ViserServer) -> None:
     server.gui.reset()
     config = PAPER.replace({"drive.speed_kmh": 30})
@@ -184,7 +209,7 @@ def test_refusals_name_label_range_and_unit(changes: dict[str, Any], expected: s
     with pytest.raises(ConfigError) as caught:
         PAPER.replace(changes)
     (fault,) = caught.value.faults
-    assert refusal(fault, changes.get(fault.path)).startswith(expected)
+    assert refusal(fault, changes.get(fault.path), PAPER).startswith(expected)
 
 
 def test_allowed_values_in_the_shown_unit() -> None:

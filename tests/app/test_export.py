@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 import time
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -12,17 +13,18 @@ import pytest
 from PIL import Image
 
 import app.export
-from app.export import NAME_LIMIT, NoPictureError, file_name, take_picture
+from app.export import NAME_LIMIT, NoPictureError, file_name, framed, movie_frames, take_picture
 from tests.app.conftest import Tab, trackride_threads, wait_for
 
 
 class FakeCamera:
     def __init__(self, answer: np.ndarray | Exception) -> None:
         self.answer = answer
-        self.asked: tuple[Any, ...] = ()
+        self.camera = SimpleNamespace(wxyz=np.array([1.0, 0, 0, 0]), position=np.zeros(3), fov=0.4, aspect=0.6)
+        self.asked: dict[str, Any] = {}
 
-    def get_render(self, height: int, width: int, *, transport_format: str, timeout: float | None) -> np.ndarray:
-        self.asked = (height, width, transport_format, timeout)
+    def get_render(self, height: int, width: int, **how: Any) -> np.ndarray:
+        self.asked = {"size": (width, height), **how}
         if isinstance(self.answer, Exception):
             raise self.answer
         return self.answer
@@ -36,8 +38,31 @@ def test_a_picture_is_an_opaque_png() -> None:
     assert (picture.format, picture.mode, picture.size) == ("PNG", "RGB", (40, 20))
     assert picture.getpixel((0, 0)) == (255, 0, 0)
     assert picture.getpixel((0, 15)) == (0, 0, 255)
-    assert camera.asked[:3] == (20, 40, "png")
-    assert camera.asked[3] is not None
+    assert camera.asked["size"] == (40, 20)
+    assert camera.asked["transport_format"] == "png"
+    assert camera.asked["timeout"] is not None
+    clear = Image.open(io.BytesIO(take_picture(camera, 40, 20, None)))
+    assert clear.mode == "RGBA"
+    assert clear.getpixel((0, 15)) == (0, 0, 0, 0)
+
+
+@pytest.mark.parametrize("page", [0.4, 1.0, 16 / 9, 3.0])
+def test_a_picture_is_filled_from_left_to_right_by_what_the_page_shows(page: float) -> None:
+    fov = framed(0.36, page, 16 / 9)
+    assert np.tan(fov / 2) * 16 / 9 == pytest.approx(np.tan(0.36 / 2) * page)
+    camera = FakeCamera(np.zeros((90, 160, 4), dtype=np.uint8))
+    camera.camera.aspect = page
+    take_picture(camera, 160, 90, "white")
+    assert camera.asked["fov"] == pytest.approx(framed(0.4, page, 16 / 9))
+
+
+def test_a_movie_shows_each_time_before_it_is_filmed() -> None:
+    camera = FakeCamera(np.zeros((720, 1280, 3), dtype=np.uint8))
+    seen: list[float] = []
+    frames = list(movie_frames(camera, seen.append, 1.0, 2.0))
+    assert len(frames) == len(seen) == 20
+    assert seen == pytest.approx(np.arange(1, 2, 0.05))
+    assert camera.asked["transport_format"] == "jpeg"
 
 
 @pytest.mark.parametrize("error", [TimeoutError("late"), RuntimeError("gone")])
@@ -109,7 +134,8 @@ def test_a_tab_that_closes_during_a_picture_leaves_nothing_behind(explore: Any, 
     tab: Tab = open_tab(explore())
     wait_for(lambda: tab.shows_run(1))
     tab.press("Screenshot")
-    wait_for(lambda: "trackride-picture" in trackride_threads())
+    wait_for(lambda: [m for m in tuple(tab.messages) if m["type"] == "GetRenderRequestMessage"], "the request")
+    assert "trackride-errand" in trackride_threads()
     tab.press("Screenshot")
     wait_for(lambda: [n for n in tab.notifications if n["title"] == "One at a time"])
     began = time.monotonic()

@@ -47,7 +47,7 @@ class Tab:
 
 class Camera:
     def __init__(self) -> None:
-        self.aspect = 1.6
+        self.image_width, self.image_height = 1600, 1000
         self.fov = 0.0
         self.position = self.look_at = self.up_direction = np.zeros(3)
 
@@ -72,6 +72,16 @@ def paper() -> Trajectory:
     return run()
 
 
+def drawn(messages: list[Any], name: str, what: str) -> np.ndarray:
+    """A property of a node as the last message sets it."""
+    return [m.updates[what] for m in messages if m.name == name and what in getattr(m, "updates", {})][-1]
+
+
+def metre_marks(vertices: np.ndarray) -> np.ndarray:
+    """Where between two metres the tiles begin."""
+    return np.unique((np.unique(vertices[::6, 0])[[0, -1]] % 1.0).round(4) % 1.0)
+
+
 def test_nothing_is_drawn_before_the_first_run(tab: Tab) -> None:
     stage = Stage(tab)  # type: ignore[arg-type]
     stage.draw(1.0)
@@ -87,7 +97,7 @@ def test_an_instant_takes_few_messages_and_makes_no_nodes(tab: Tab, paper: Traje
     tab.sent()
     stage.draw(0.12)
     assert tab.nodes() == nodes
-    assert 8 <= len(tab.sent()) <= 12
+    assert 8 <= len(tab.sent()) <= 15
 
 
 def test_another_stiffness_makes_no_nodes_and_sends_no_road(tab: Tab, paper: Trajectory) -> None:
@@ -134,16 +144,20 @@ def test_switches_outlive_another_vehicle_and_save_messages(tab: Tab, paper: Tra
     assert {"/vehicle/arrows", "/vehicle/hull"}.isdisjoint({message.name for message in tab.sent()})
     stage.show_arrows = True
     assert tab.scene._handle_from_node_name["/vehicle/arrows"].visible
+    np.testing.assert_array_equal(  # and it is not as it was when it was hidden
+        drawn(tab.sent(), "/vehicle/arrows", "points"),
+        stage._scene.at(0.5).arrows,  # type: ignore[union-attr]
+    )
 
 
-def drawn(messages: list[Any], name: str, what: str) -> np.ndarray:
-    """A property of a node as the last message sets it."""
-    return [message.updates[what] for message in messages if message.name == name and what in message.updates][-1]
-
-
-def metre_marks(vertices: np.ndarray) -> np.ndarray:
-    """Where between two metres the tiles begin."""
-    return np.unique((np.unique(vertices[::6, 0])[[0, -1]] % 1.0).round(4) % 1.0)
+def test_longer_arrows_are_drawn_at_once(tab: Tab, paper: Trajectory) -> None:
+    stage = Stage(tab)  # type: ignore[arg-type]
+    stage.show(paper)
+    stage.draw(0.5)
+    before = drawn(tab.sent(), "/vehicle/arrows", "points")
+    stage.arrow_scale = 2.0
+    after = drawn(tab.sent(), "/vehicle/arrows", "points")
+    np.testing.assert_allclose(after[:, 1] - after[:, 0], 2 * (before[:, 1] - before[:, 0]), atol=2e-3)
 
 
 def test_following_the_road_moves_else_the_vehicle(tab: Tab, paper: Trajectory) -> None:
@@ -230,12 +244,12 @@ def test_the_camera_fits_a_new_shape_of_the_picture_unless_moved(tab: Tab, paper
     stage = Stage(tab)  # type: ignore[arg-type]
     stage.show(paper)
     wide = np.array(tab.camera.position)
-    tab.camera.aspect = 0.8
+    tab.camera.image_width = 800
     asyncio.run(tab.camera.moved(tab.camera))  # type: ignore[operator]
     narrow = np.array(tab.camera.position)
     assert np.linalg.norm(narrow) > 1.2 * np.linalg.norm(wide)
     aside = narrow + np.array([0.0, 3.0, 0.0])
     tab.camera.position = aside
-    tab.camera.aspect = 1.6
+    tab.camera.image_width = 1600
     asyncio.run(tab.camera.moved(tab.camera))  # type: ignore[operator]
     np.testing.assert_array_equal(tab.camera.position, aside)

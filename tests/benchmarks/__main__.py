@@ -14,7 +14,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from tests.benchmarks import model
+from tests.benchmarks import latency, model
 
 RESULTS = Path(__file__).parent / "results"
 
@@ -30,7 +30,7 @@ def machine_name() -> str:
 
 
 def main() -> None:
-    figures = model.measure()
+    figures = model.measure() | latency.measure()
     table = Table("what", "median", "unit", title=f"Trackride on {machine_name()}")
     for what, (value, unit) in figures.items():
         table.add_row(what, f"{value:.4g}", unit)

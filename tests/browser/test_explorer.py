@@ -64,7 +64,7 @@ def test_a_screenshot_shows_the_vehicle_and_is_named_after_preset_and_change(exp
     before = explorer.run_number()
     explorer.press("Amplitude", "ArrowRight")
     explorer.wait_for_run(after=before)
-    explorer.page.get_by_text("Picture", exact=True).click()
+    explorer.page.get_by_text("Export", exact=True).click()
     with explorer.page.expect_download(timeout=60_000) as download:
         explorer.button("Screenshot").click()
     name = download.value.suggested_filename

@@ -22,14 +22,14 @@ def unbalanced(system: System, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """M q̈ (B, 3), N and N m, of a vehicle at rest at q on flat ground without drive; and the normal loads (W,)."""
     still = system._replace(prescribed=False, v_ref=0.0)
     road = GROUND if system.r == GROUND.radius else build_road(FLAT.replace({f"{WHEELS}.radius": system.r}))
-    rates = equations.rates(still, road, 0.0, State(q, np.zeros_like(q), np.zeros(len(system.wheel)), 0.0))
+    away = q + np.array([20.0, 0.0, 0.0])  # from the ends of the road's piece, which brute force tries as well
+    rates = equations.rates(still, road, 0.0, State(away, np.zeros_like(q), np.zeros(len(system.wheel)), 0.0))
     return rates.v_dot * np.column_stack([system.mass, system.mass, system.inertia]), rates.f_n
 
 
 def assert_at_rest(system: System, q: np.ndarray, static_load: np.ndarray) -> None:
     residual, f_n = unbalanced(system, q)
-    assert np.abs(residual[:, 1:]).max() <= 1e-6
-    assert np.abs(residual[:, 0]).max() <= 1e-8 * f_n.max()  # brute force finds contact points to some nanometres
+    assert np.abs(residual).max() <= 1e-6
     np.testing.assert_allclose(static_load, f_n, atol=1e-6)
     assert static_load.sum() == pytest.approx(system.mass.sum() * G, abs=1e-5)
     np.testing.assert_allclose(equations.constraints(system, q, 0.0), 0.0, atol=1e-12)
@@ -107,10 +107,10 @@ def test_any_vehicle_rests_or_says_why_not(changes):
 @given(VEHICLES)
 @settings(max_examples=60, deadline=None)
 def test_stiff_vehicles_always_rest(changes):
-    """Springs that hold ten times what the weight needs: no vehicle on the ground may be refused."""
+    """Springs far stiffer than the weight needs, wheels far apart: none of these vehicles may be refused."""
     weight_at_wheel = changes["vehicle.chassis.mass"] * G / changes[f"{WHEELS}.count"]
     changes = changes | {
-        f"{ROAD_SPRING}.stiffness": 100.0 * weight_at_wheel / changes[f"{ARMS}.length"],
+        f"{ROAD_SPRING}.stiffness": 50.0 * weight_at_wheel / changes[f"{ARMS}.length"],
         f"{IMAGINARY}.preload_deflection": 0.0,
         f"{WHEELS}.spacing": 1.5,
         "vehicle.chassis.cg_height": 0.5,
@@ -129,7 +129,7 @@ def test_rounding_does_not_refuse_the_heaviest_vehicle(wheels, radius):
     size = {f"{WHEELS}.count": wheels, f"{WHEELS}.radius": radius, f"{WHEELS}.spacing": 5.0}
     system = build_system(PAPER.replace(heavy | stiff | size))
     q, load = rest_pose(system)
-    assert np.abs(unbalanced(system, q)[0][:, 1:]).max() <= 3e-6
+    assert np.abs(unbalanced(system, q)[0]).max() <= 3e-6
     assert load.sum() == pytest.approx(system.mass.sum() * G, rel=1e-11)
 
 

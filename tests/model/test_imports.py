@@ -30,7 +30,7 @@ LEVEL = {module: level for level, row in enumerate(ROWS) for module in row}
 PLACES = {
     "numba": {"model.compiled"},
     "model.compiled": {"model.road_table", "model.kernel", "model.integrate"},
-    "threading": {"app.session", "app.runner"},
+    "threading": {"app.session", "app.runner", "app.errands"},
     "queue": set(),
     "_thread": set(),
     "dask": {"model.study"},
@@ -39,7 +39,18 @@ PLACES = {
     "trimesh": {"assets.solids"},
 }
 NOT_IN_MODEL = {"app", "assets", "viser", "threading", "asyncio", "trimesh", "matplotlib", "tkinter", "rich", "typer"}
-PURE = ("app.scene", "app.plots", "app.playback", "app.colours")  # no viser, so that they are tested without a browser
+PURE = (
+    "app.scene",
+    "app.plots",
+    "app.playback",
+    "app.colours",
+    "app.ride_plots",
+    "app.spectrum_plot",
+    "app.load_map",
+    "app.load_colours",
+    "app.trust",
+    "app.markup",
+)  # no viser, so that they are tested without a browser
 
 
 def name_of(path: Path) -> str:

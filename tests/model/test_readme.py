@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
+from model.errata import errata_list
 from model.parameters import parameter_table
 
 README = Path(__file__).parents[2] / "README.md"
 
 
-def test_the_parameter_table_is_the_code_s():
+@pytest.mark.parametrize(("mark", "content"), [("errata", errata_list()), ("parameters", parameter_table())])
+def test_what_is_generated_is_the_code_s(mark: str, content: str):
     text = README.read_text()
-    found = text.split("<!-- parameters: make readme -->")[1].split("<!-- end of parameters -->")[0]
-    assert found.strip() == parameter_table().strip(), "run: make readme"
+    found = text.split(f"<!-- {mark}: make readme -->")[1].split(f"<!-- end of {mark} -->")[0]
+    assert found.strip() == content.strip(), "run: make readme"

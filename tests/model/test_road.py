@@ -33,9 +33,16 @@ def brute_force(road: Road, centre: np.ndarray) -> float:
 
 
 def centres_near(road: Road, rng: np.random.Generator, x: np.ndarray) -> np.ndarray:
-    """Wheel centres above these x, in the ground, touching and a little above: (K, 2)."""
-    highest = road.height(x[:, None] + np.linspace(-1, 1, 201) * road.radius).max(axis=1)
-    return np.column_stack([x, highest + road.radius * rng.uniform(0.3, 1.1, len(x))])
+    """Wheel centres above these x, resting a little sunk in or not quite, some deep in the ground: (K, 2)."""
+    depth = road.radius * rng.choice([rng.uniform(-0.1, 0.1), 0.02, rng.uniform(0.1, 0.7)], len(x))
+    return np.column_stack([x, resting_height(road, x, depth)])
+
+
+def resting_height(road: Road, x: np.ndarray, depth: np.ndarray) -> np.ndarray:
+    """How high the centre is of a wheel that has sunk in by these depths: the lowest that keeps r − depth away."""
+    away = (road.radius - depth)[:, None]
+    u = np.linspace(-1.0, 1.0, 2001) * away
+    return (road.height(x[:, None] + u) + np.sqrt(away**2 - u**2)).max(axis=1)
 
 
 def assert_nearest(road: Road, centres: np.ndarray, tolerance: float = 1e-10) -> None:
@@ -215,6 +222,27 @@ def test_a_wheel_bridges_a_valley_tighter_than_itself():
     assert d[0] < 0.35 - 0.01  # the trough itself is 0.35 m below
     assert abs(points[0, 0] - trough) > 0.05
     assert d[0] == pytest.approx(brute_force(road, np.array([trough, 0.25])), abs=1e-12)
+
+
+@pytest.mark.parametrize("tightness", [0.7, 0.9, 1.05, 1.3, 2.0, 4.0])
+def test_nearest_point_in_valleys_about_as_tight_as_the_wheel(tightness):
+    """Trough's curvature × radius from safe to bridged; there both flanks are nearly as near, and one is nearer."""
+    k = 2 * np.pi / 1.2
+    amplitude = tightness / (k**2 * RADIUS)
+    valleys = {"road.amplitude": amplitude, "road.wavelength": 1.2, "road.ramp": 0.0, "road.start": 3.0}
+    road = build_road(PAPER.replace(valleys))
+    rng = np.random.default_rng(8)
+    aside = rng.choice([-1.0, 1.0], 60) * 10.0 ** rng.uniform(-7.0, -0.7, 60)
+    x = 3.0 + 1.2 * 10.75 + aside
+    assert_nearest(road, np.column_stack([x, resting_height(road, x, np.full(60, 0.02 * RADIUS))]))
+
+
+def test_nearest_point_between_two_straight_flanks():
+    """Coarse cells: the nearer flank is not always the one with the nearer node."""
+    road = Road(polyline(np.array([3.0, 4.0, 5.07]), np.array([0.5, 0.0, 0.535])), RADIUS)
+    rng = np.random.default_rng(9)
+    x = 4.0 + rng.choice([-1.0, 1.0], 60) * 10.0 ** rng.uniform(-7.0, -1.5, 60)
+    assert_nearest(road, np.column_stack([x, resting_height(road, x, np.full(60, 0.01))]))
 
 
 def test_a_centre_below_the_road_counts_negative_and_turns_the_normal_round():

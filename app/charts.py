@@ -1,0 +1,98 @@
+"""uPlot charts below each other in a tab. New data leave zoom and hidden curves alone."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import viser
+
+from app.plots import TIME, Curve, Plot
+
+FONT = "11px system-ui, sans-serif"
+OPACITY = {"run": "", "baseline": "80", "static": "90"}  # of curves by kind, as the last byte of their colour
+FADED = "26"
+DASH = {"baseline": (4, 3), "static": (1, 3)}
+KEY = {"static": "dotted: at rest", "baseline": "dashed: baseline"}
+TICKS: viser.uplot.Axis_Ticks = {"size": 4, "width": 1}
+NUDGE = 1e-9  # s. A chart misses a new size that comes with new data, and works out its axes when the range changes.
+PADDING = (14, 18, 0, 0)  # px; less on top would cut the highest tick's label
+TIME_KEY, OTHER_KEY = "trackride-time", "trackride-frequency"  # charts with the same key share cursor and zoom
+
+
+class Charts:
+    """Charts in a container (a tab) of `gui`, each of the same height, px."""
+
+    def __init__(self, gui: viser.GuiApi, container: Any) -> None:
+        self._gui, self._container = gui, container
+        self._plots: tuple[Plot, ...] = ()
+        self._charts: list[viser.GuiUplotHandle] = []
+        self._height = 0
+        self._nudge = 0.0
+
+    def show(self, plots: tuple[Plot, ...], height: int) -> None:
+        """Show these plots. Charts are made anew only when there are other curves."""
+        shapes = [[(curve.label, curve.kind) for curve in plot.curves] + [plot.title] for plot in plots]
+        before = [[(curve.label, curve.kind) for curve in plot.curves] + [plot.title] for plot in self._plots]
+        restyled = [plot.curves for plot in plots] != [plot.curves for plot in self._plots]
+        self._plots = plots
+        if shapes != before:
+            self._height = height
+            self._make()
+            return
+        self._nudge = NUDGE - self._nudge
+        for chart, plot in zip(self._charts, plots, strict=True):
+            if restyled:
+                chart.series = _series(plot)
+            chart.height = height
+            x, *values = plot.data
+            x = x.copy()
+            x[-1] += self._nudge
+            chart.data = (x, *values)
+
+    def _make(self) -> None:
+        for chart in self._charts:
+            chart.remove()
+        with self._container:
+            last = len(self._plots) - 1
+            self._charts = [self._chart(plot, with_axis=k == last) for k, plot in enumerate(self._plots)]
+
+    def _chart(self, plot: Plot, with_axis: bool) -> viser.GuiUplotHandle:
+        low, high = ({"soft": bound, "mode": 1} for bound in plot.least) if plot.least else ({}, {})
+        axis: viser.uplot.Axis = {"font": FONT, "ticks": TICKS, "grid": {"width": 1}}
+        named: viser.uplot.Axis = {"labelFont": FONT, "labelSize": 16, "labelGap": 0}
+        along, upright = axis | {"size": 24}, axis | named | {"size": 40, "space": 20, "label": plot.unit}
+        kinds = {curve.kind for curve in plot.curves}
+        key = [words for kind, words in KEY.items() if kind in kinds]
+        return self._gui.add_uplot(
+            plot.data,
+            _series(plot),
+            title=f"{plot.title} ({', '.join(key)})" if key else plot.title,
+            scales={
+                "x": {"time": False},
+                # mode 1: up to the soft limit at least
+                "y": {"range": {"min": {"pad": 0.1} | low, "max": {"pad": 0.1} | high}},
+            },
+            axes=(along | named | {"label": plot.axis} if with_axis else along, upright),
+            cursor={
+                "sync": {"key": TIME_KEY if plot.axis == TIME else OTHER_KEY},
+                "y": False,
+                "points": {"size": 5},
+            },
+            height=self._height,
+            padding=PADDING,
+        )
+
+
+def _series(plot: Plot) -> tuple[viser.uplot.Series, ...]:
+    return {"label": plot.axis}, *(_line(curve) for curve in plot.curves)
+
+
+def _line(curve: Curve) -> viser.uplot.Series:
+    line: viser.uplot.Series = {
+        "label": curve.label,
+        "class": curve.kind,
+        "stroke": curve.colour + (FADED if curve.faded else OPACITY[curve.kind]),
+        "width": 1.5,
+        "points": {"show": False},
+    }
+    return line | {"dash": DASH[curve.kind]} if curve.kind in DASH else line

@@ -1,0 +1,72 @@
+"""The figures of a run beside those of its baseline, as HTML. Pure."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Sequence
+
+from model.ride import AIR_TIME, LOAD_PEAK, LOAD_RMS, TRAVEL, Row
+
+PAIRS = ((LOAD_PEAK, AIR_TIME), (LOAD_RMS, TRAVEL))  # figures of each wheel side by side in one table
+NOTABLE = 0.5  # %: a smaller change is not coloured
+NONE = "–"
+
+
+def comparison_table(rows: Sequence[Row], compared: bool) -> str:
+    """Tables of all figures: the vehicle's first, then each wheel's. compared: there is a baseline."""
+    whole = [row for row in rows if not row.wheel]
+    wheels = list(dict.fromkeys(row.wheel for row in rows if row.wheel))
+    by_place = {(row.figure, row.wheel): row for row in rows}
+    heads = ("now", "baseline", "change") if compared else ("now",)
+    tables = [_table(["Whole vehicle", *heads], [[_whole_label(row), *_cells(row, compared)] for row in whole])]
+    for pair in PAIRS:
+        over = "<tr><th></th>" + "".join(
+            f'<th colspan="{len(heads)}">{html.escape(f"{figure.label}, {figure.unit}")}</th>' for figure in pair
+        )
+        lines = [
+            [
+                f"<td>{html.escape(wheel)}</td>",
+                *(cell for figure in pair for cell in _cells(by_place.get((figure.label, wheel)), compared)),
+            ]
+            for wheel in wheels
+        ]
+        tables.append(_table(["Wheel", *heads * len(pair)], lines, over + "</tr>"))
+    return "".join(tables)
+
+
+def _table(heads: Sequence[str], lines: Sequence[Sequence[str]], over: str = "") -> str:
+    head = "<tr>" + "".join(f"<th>{html.escape(text)}</th>" for text in heads) + "</tr>"
+    body = "".join(f"<tr>{''.join(cells)}</tr>" for cells in lines)
+    return f'<table class="trackride-figures">{over}{head}{body}</table>'
+
+
+def _whole_label(row: Row) -> str:
+    return f"<td>{html.escape(row.figure)}, {html.escape(row.unit)}</td>"
+
+
+def _cells(row: Row | None, compared: bool) -> list[str]:
+    """Now, baseline and change."""
+    value, baseline, change = (None, None, None) if row is None else (row.now, row.baseline, row.change)
+    now = f"<td>{figure_text(value)}</td>"
+    if not compared:
+        return [now]
+    sign = "" if change is None or abs(change) < NOTABLE else "more" if change > 0 else "less"
+    return [now, f"<td>{figure_text(baseline)}</td>", f'<td class="{sign}">{change_text(change)}</td>']
+
+
+def figure_text(value: float | None) -> str:
+    """Three digits that count, as people write them: 0.0912, 1.35, 18.7, 183."""
+    if value is None:
+        return NONE
+    if value == 0:
+        return "0"
+    digits = max(2 - int(f"{abs(value):e}".partition("e")[2]), 0)
+    return f"{value:.{min(digits, 4)}f}"
+
+
+def change_text(change: float | None) -> str:
+    """Percent with its sign: "+13 %", "−1.1 %"."""
+    if change is None:
+        return NONE
+    text = f"{change:+.0f}" if abs(change) >= 9.95 else f"{change:+.1f}"
+    return f"{'0' if float(text) == 0 else text.replace('-', '−')} %"

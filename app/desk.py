@@ -1,0 +1,276 @@
+"""What the user of one tab keeps at hand: steps back and forth, runs, the baseline, presets of their own.
+
+Only the thread that draws (app/session.py) uses it. What is to outlast the page goes to the browser's storage.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+from collections.abc import Callable, Mapping
+from typing import Protocol
+
+from app.history import REST, Changes, Kept, Runs, first_wish, run_name, same
+from app.runner import Finished, Wish
+from app.window import Window
+from model.config import Config, ConfigError, dump_config, parse_config
+from model.trajectory import Trajectory
+
+OWN_PRESETS = 30  # that a tab keeps
+COMPARE_EVERY = 0.3  # s from one table of figures to the next while runs follow each other
+
+log = logging.getLogger("trackride")
+
+
+class Wishing(Protocol):
+    """What the desk asks of the runner."""
+
+    @property
+    def latest(self) -> Wish: ...
+
+    def change(self, update: Callable[[Wish], Wish]) -> None: ...
+
+
+class Desk:
+    """Shows what it keeps in the window, and wishes for runs."""
+
+    def __init__(
+        self, window: Window, runner: Wishing, presets: Mapping[str, Config], store: Callable[[str], None]
+    ) -> None:
+        """presets: name -> configuration; store: puts a text where `restore` gets it from at the next visit."""
+        self._window, self._runner, self._store = window, runner, store
+        self._presets = dict(presets)
+        self._own: list[str] = []  # names of the user's presets, oldest first
+        self._start = runner.latest
+        self._started_with = dump_config(self._start.config())
+        self._changes = Changes(self._start)
+        self._runs = Runs()
+        self._good: Finished | None = None  # the run that is shown; None: a drive, or nothing yet
+        self._good_at = 0.0  # when it came, s
+        self._rested = False  # the user has rested on it
+        self._kept: Kept | None = None  # the same, once it is kept
+        self._baseline: Kept | None = None
+        self._compared = True  # the table of figures is that of the run that is shown
+        self._compared_at = 0.0  # when it was made, s
+        self._stored = ""
+
+    @property
+    def presets(self) -> Mapping[str, Config]:
+        """By name; may be read on any thread."""
+        return self._presets
+
+    @property
+    def baseline(self) -> Trajectory | None:
+        """The run that others are compared with."""
+        return None if self._baseline is None else self._baseline.run
+
+    # ── What happens ──
+
+    def finished(self, done: Finished, now: float) -> None:
+        """A run is shown, at `now`, s."""
+        fresh = self._good is None or not same(self._good.wish, done.wish)
+        self._good, self._good_at, self._rested = done, now, False
+        self._kept = self._runs.find(done.trajectory.config)
+        self._compared = False
+        self._came_true(done.wish, now)
+        if fresh:
+            self._show()
+            self._window.runs.show_name(self._name)
+
+    def driven(self, wish: Wish, now: float) -> None:
+        """A drive is shown, at `now`, s."""
+        self._good = self._kept = None
+        self._came_true(wish, now)
+
+    def tick(self, now: float) -> None:
+        """Do what waits for a moment of rest; `now`, s."""
+        if self._good is None or not len(self._good.trajectory.t):
+            return
+        if not self._compared and now - self._compared_at >= COMPARE_EVERY:
+            self._compare(now)
+        if not self._rested and now - self._good_at >= REST and self._settled(self._good.wish):
+            self._rested = True
+            self._keep(self._good)
+            self._remember()
+
+    def _came_true(self, wish: Wish, now: float) -> None:
+        if self._settled(wish):
+            self._changes.note(wish, now)
+            self._offer(wish.base)
+
+    def _settled(self, wish: Wish) -> bool:
+        """Whether no newer wish is on its way."""
+        return self._runner.latest.number == wish.number
+
+    # ── Steps ──
+
+    def go(self, steps: int) -> None:
+        """Undo so many steps when negative, or redo them."""
+        under_way = not same(self._runner.latest, self._changes.present)
+        wish = self._changes.go(steps + 1 if under_way and steps < 0 else steps)
+        if wish is None and under_way and steps < 0:
+            wish = self._changes.present
+        if wish is not None:
+            self._wish(wish)
+        else:
+            self._window.say("Nothing to undo" if steps < 0 else "Nothing to redo", "All parameters stay as they are.")
+
+    # ── Runs and baseline ──
+
+    def pin(self) -> None:
+        """Make the run that is shown the baseline."""
+        if self._good is None:
+            self._window.say("Only a run can be pinned", "Change from Drive to Run first.")
+            return
+        self._set_baseline(self._keep(self._good))
+        self._window.say("Baseline pinned", f"{self._name}. Whatever you change now is compared with it.")
+
+    def swap(self) -> None:
+        """Show the baseline, and make what is shown now the baseline."""
+        if self._good is None or self._baseline is None:
+            self._window.say("Nothing to swap", "Pin a run as the baseline (B), then change something.")
+            return
+        other = self._baseline
+        self._set_baseline(self._keep(self._good))
+        self._wish(other.wish)
+
+    def clear(self) -> None:
+        """Compare no more."""
+        self._set_baseline(None)
+
+    def recall(self, number: int) -> None:
+        """Show a run that is kept."""
+        if number in self._runs:
+            self._wish(self._runs[number].wish)
+
+    def compare(self, number: int) -> None:
+        """Make a run that is kept the baseline."""
+        if number in self._runs:
+            self._set_baseline(self._runs[number])
+
+    def delete(self, number: int) -> None:
+        """Keep a run no more; as the baseline it stays."""
+        self._runs.delete(number)
+        if self._kept is not None and self._kept.number == number:
+            self._kept, self._rested = None, True  # not to be kept again at once
+        self._show()
+
+    def rename(self, name: str) -> None:
+        """Name the run that is shown, and keep it."""
+        if self._good is None:
+            return
+        self._kept = self._runs.rename(self._keep(self._good).number, name)
+        if self._baseline is not None and self._baseline.number == self._kept.number:
+            self._baseline = self._kept
+        self._show()
+
+    def take_in(self, run: Trajectory, name: str) -> None:
+        """Keep a run from outside, and make it the baseline."""
+        self._set_baseline(self._runs.keep(Wish(run.config), run, name))
+        self._window.say("Baseline pinned", f"{name}. What is shown is compared with it.")
+
+    def _keep(self, good: Finished) -> Kept:
+        self._kept = self._runs.keep(good.wish, good.trajectory)
+        self._show()
+        return self._kept
+
+    def _set_baseline(self, run: Kept | None) -> None:
+        self._baseline = run
+        self._window.show_baseline(self.baseline)
+        self._compared, self._compared_at = False, 0.0
+        self._show()
+
+    @property
+    def _name(self) -> str:
+        """Of the run that is shown."""
+        if self._kept is not None:
+            return self._kept.name
+        return "" if self._good is None else run_name(self._good.wish)
+
+    def _show(self) -> None:
+        self._window.runs.show(self._runs, self._name, self._kept, self._baseline)
+
+    def _compare(self, now: float) -> None:
+        assert self._good is not None
+        self._window.runs.compare(self._good.trajectory, self.baseline)
+        self._compared, self._compared_at = True, now
+
+    # ── Configurations ──
+
+    def use(self, config: Config) -> None:
+        """Wish for a configuration from outside: for changes to the present preset if it has that one's name."""
+        base = self._runner.latest.base
+        self._wish(first_wish(base, config) if config.name == base.name else Wish(config))
+
+    def save_preset(self, name: str) -> None:
+        """Make a preset of the configuration that is shown."""
+        if self._good is None:
+            return
+        name = " ".join(name.split())
+        if not name:
+            self._window.say("No name", "Give the preset a name first.")
+            return
+        try:
+            config = self._good.trajectory.config.replace({"name": name})
+        except ConfigError as error:
+            self._window.show_faults("This name cannot be used", error)
+            return
+        for own in self._own:
+            if self._presets[own].name == name:
+                self._presets[own] = config
+        self._offer(config)
+        self._wish(Wish(config))
+        self._remember()
+        self._window.say("Preset saved", f"{name} is among the presets of this browser.")
+
+    def _offer(self, base: Config) -> None:
+        """Show this preset as the chosen one, also when it is new."""
+        name = next((name for name, config in self._presets.items() if config == base), "")
+        if not name:
+            name = next(f"own {k}" for k in range(1, OWN_PRESETS + 2) if f"own {k}" not in self._presets)
+            self._own.append(name)
+            self._presets[name] = base
+            if len(self._own) > OWN_PRESETS:
+                del self._presets[self._own.pop(0)]
+        self._window.show_presets(self._presets, name)
+
+    def _wish(self, wish: Wish) -> None:
+        """Wish for all of it: the controls follow."""
+        self._runner.change(lambda latest: Wish(wish.base, wish.changes))
+
+    # ── From one visit to the next ──
+
+    def restore(self, stored: str) -> None:
+        """Go on where this browser was at its last visit, unless the explorer was started with something else."""
+        try:
+            state = json.loads(stored)
+            own = [parse_config(text) for text in state["presets"]][:OWN_PRESETS]
+            base, config = parse_config(state["base"]), parse_config(state["config"])
+            start = state["start"]
+        except (ValueError, TypeError, KeyError, AttributeError, RecursionError, ConfigError) as error:
+            log.info("what the browser had stored cannot be used: %s", error)
+            return
+        for preset in own:
+            if preset not in self._presets.values():
+                self._offer(preset)
+        self._offer(self._runner.latest.base)
+        wish = first_wish(base, config)
+        latest = self._runner.latest
+        if start == self._started_with and latest.number == self._start.number and not same(wish, latest):
+            self._wish(wish)
+            self._window.say("Welcome back", "All parameters are as you left them. Undo leads back to the start.")
+
+    def _remember(self) -> None:
+        if self._good is None:
+            return
+        stored = json.dumps(
+            {
+                "start": self._started_with,
+                "base": dump_config(self._good.wish.base),
+                "config": dump_config(self._good.trajectory.config),
+                "presets": [dump_config(self._presets[name]) for name in self._own],
+            }
+        )
+        if stored != self._stored:
+            self._stored = stored
+            self._store(stored)

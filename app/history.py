@@ -1,0 +1,188 @@
+"""What came of the user's changes: steps to go back and forth through, and the runs that are kept. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from app.controls import choice_words, shown_text
+from app.runner import Wish
+from model.config import Config
+from model.parameters import PARAMETER, Parameter
+from model.trajectory import Trajectory
+
+REST = 1.0  # s: changes of the same parameters that follow each other faster are one step
+STEPS = 200  # that can be undone
+RUNS = 20  # that are kept
+MEMORY = 200e6  # bytes of the runs that are kept
+NAMED_CHANGES = 2  # in the name of a run; the others are counted
+NAME_LIMIT = 80  # characters of a name that the user gives
+RUN_COLOURS = (
+    "#1c6cb2", "#d9480f", "#2b8a3e", "#9c36b5", "#c99700",
+    "#0b8494", "#c2255c", "#5c7cfa", "#74a12e", "#846358",
+)  # fmt: skip
+
+
+class Changes:
+    """Wishes to go back and forth through. All changes of a drag are one step."""
+
+    def __init__(self, first: Wish) -> None:
+        self._steps = [first]
+        self._at = 0
+        self._noted = float("-inf")  # when, s
+
+    @property
+    def present(self) -> Wish:
+        return self._steps[self._at]
+
+    def note(self, wish: Wish, now: float) -> None:
+        """A wish has come true at `now`, s; what had been undone before is forgotten."""
+        if same(wish, self.present):
+            return
+        moving = wish.touched and now - self._noted < REST
+        self._noted = now
+        del self._steps[self._at + 1 :]
+        before = self._steps[max(self._at - 1, 0)]
+        moved = changed_keys(before, self.present)
+        if moving and moved and changed_keys(before, wish) == moved:
+            self._steps[-1] = wish
+        else:
+            self._steps.append(wish)
+        del self._steps[: -STEPS - 1]
+        self._at = len(self._steps) - 1
+
+    def go(self, steps: int) -> Wish | None:
+        """The wish that many steps on, or back when negative, as far as there are any; None where there is none."""
+        target = min(max(self._at + steps, 0), len(self._steps) - 1)
+        if target == self._at:
+            return None
+        self._at, self._noted = target, float("-inf")
+        return self.present
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A run that is kept."""
+
+    number: int  # unique in its tab, rising
+    wish: Wish
+    run: Trajectory
+    name: str
+    colour: str  # CSS
+    named: bool  # by the user
+
+
+class Runs:
+    """The runs that are kept. Beyond RUNS of them, or MEMORY, the oldest without a name of the user's goes first."""
+
+    def __init__(self) -> None:
+        self._kept: dict[int, Kept] = {}
+        self._last_number = 0
+
+    def __iter__(self) -> Iterator[Kept]:
+        """Oldest first."""
+        return iter(tuple(self._kept.values()))
+
+    def __len__(self) -> int:
+        return len(self._kept)
+
+    def __contains__(self, number: object) -> bool:
+        return number in self._kept
+
+    def __getitem__(self, number: int) -> Kept:
+        return self._kept[number]
+
+    def find(self, config: Config) -> Kept | None:
+        """The run of this configuration."""
+        return next((kept for kept in self if kept.run.config == config), None)
+
+    def keep(self, wish: Wish, run: Trajectory, name: str = "") -> Kept:
+        """Keep a run, unless one of the same configuration is kept already; that one, or the new one."""
+        found = self.find(run.config)
+        if found is not None:
+            return found
+        self._last_number += 1
+        kept = Kept(self._last_number, wish, run, name or run_name(wish), self._free_colour(), named=bool(name))
+        self._kept[kept.number] = kept
+        self._make_room(kept)
+        return kept
+
+    def rename(self, number: int, name: str) -> Kept:
+        """Give a run a name; without one it is called after its changes again."""
+        kept, name = self._kept[number], " ".join(name.split())[:NAME_LIMIT]
+        self._kept[number] = replace(kept, name=name or run_name(kept.wish), named=bool(name))
+        return self._kept[number]
+
+    def delete(self, number: int) -> None:
+        self._kept.pop(number, None)
+
+    def _make_room(self, newest: Kept) -> None:
+        while len(self._kept) > 1 and (len(self._kept) > RUNS or sum(size(kept.run) for kept in self) > MEMORY):
+            others = [kept for kept in self if kept is not newest]
+            self.delete(min(others, key=lambda kept: (kept.named, kept.number)).number)
+
+    def _free_colour(self) -> str:
+        """The first colour that the fewest runs have."""
+        used = [kept.colour for kept in self]
+        return min(RUN_COLOURS, key=used.count)
+
+
+def size(run: Trajectory) -> int:
+    """Bytes of a run's arrays."""
+    return sum(array.nbytes for array in vars(run).values() if isinstance(array, np.ndarray))
+
+
+def same(one: Wish, other: Wish) -> bool:
+    """Whether two wishes are for the same base with the same changes."""
+    return one.base == other.base and dict(one.changes) == dict(other.changes)
+
+
+def changed_keys(one: Wish, other: Wish) -> frozenset[str] | None:
+    """Parameters in which two wishes differ; None when they start from different presets."""
+    if one.base != other.base:
+        return None
+    base, absent = one.base.values(), object()
+    return frozenset(
+        key
+        for key in {*one.changes, *other.changes}
+        if one.changes.get(key, base.get(key, absent)) != other.changes.get(key, base.get(key, absent))
+    )
+
+
+def first_wish(base: Config, config: Config) -> Wish:
+    """The wish for `config` as changes to `base`, so that a reset leads back to that."""
+    before, after = base.values(), config.values()
+    changes = {key: value for key, value in after.items() if before.get(key) != value}
+    wish = Wish(base, changes)
+    return wish if wish.config() == config else Wish(config)
+
+
+def run_name(wish: Wish) -> str:
+    """What was changed: "Speed 15 → 22 km/h"; without changes the preset's name."""
+    changes = differences(wish.base, wish.config())
+    if not changes:
+        return wish.base.name
+    more = len(changes) - NAMED_CHANGES
+    return ", ".join(changes[:NAMED_CHANGES]) + (f" and {more} more" if more > 0 else "")
+
+
+def differences(before: Config, after: Config) -> list[str]:
+    """Each parameter that differs, in words: "Speed 15 → 22 km/h"; names and descriptions left out."""
+    old, new = before.values(), after.values()
+    return [
+        f"{parameter.label} {_words(parameter, old.get(key))} → {_words(parameter, new.get(key))} "
+        f"{parameter.shown_unit}".rstrip()
+        for key, parameter in PARAMETER.items()
+        if parameter.kind != "text" and parameter.applies_to(after.road.type) and old.get(key) != new.get(key)
+    ]
+
+
+def _words(parameter: Parameter, value: Any) -> str:
+    if value is None:
+        return "automatic"
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    return choice_words(value) if isinstance(value, str) else shown_text(parameter, value)

@@ -1,0 +1,107 @@
+"""A run as one HTML file that opens from disk and plays: recorded off a throwaway server of its own."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import SimpleNamespace
+from typing import cast
+
+import rich
+import viser
+
+from app.camera import View
+from app.stage import Stage
+from model.trajectory import Trajectory
+
+RATE = 25.0  # frames a second
+LONGEST = 30.0  # s of a run that are recorded: about a third of a megabyte for each
+WINDOW = (1600, 900)  # pixels, whose shape the view is fitted to
+
+# Let messages take effect at once, and not with the next frame: whenever it starts anew or is scrubbed back, the page
+# first turns on viser's own lights, and would show them until then. Where a page has no such insides, nothing changes.
+AT_ONCE = """<script>
+  const waiting = setInterval(() => {
+    const viewer = window.__viserMutable;
+    if (!viewer?.drainMessageQueue) return;
+    clearInterval(waiting);
+    const request = viewer.requestRender;
+    let busy = false;
+    viewer.requestRender = () => {
+      request();
+      if (busy) return;
+      busy = true;
+      try { viewer.drainMessageQueue?.(); } finally { busy = false; }
+    };
+  }, 50);
+</script>"""
+
+
+def replay_html(
+    trajectory: Trajectory,
+    title: str,
+    dark: bool = False,
+    view: View = "three-quarter",
+    should_stop: Callable[[], bool] = lambda: False,
+) -> str | None:
+    """A standalone page in which the run plays, can be scrubbed and looked at from all sides.
+
+    title: plain text, shown above the view and as the page's name. A run longer than LONGEST is cut there, and the
+    page says so. Takes a few seconds; not for an event loop. None when `should_stop`, asked before each frame, says so.
+    """
+    duration = float(trajectory.t[-1])
+    if duration > LONGEST:
+        title += f" (the first {LONGEST:g} s of {duration:g} s)"
+    page = _record(trajectory, min(duration, LONGEST), dark, view, should_stop)
+    return page and _titled(page, title, dark)
+
+
+def _record(
+    trajectory: Trajectory, duration: float, dark: bool, view: View, should_stop: Callable[[], bool]
+) -> str | None:
+    with _silence():
+        server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+    try:
+        camera = SimpleNamespace(image_width=WINDOW[0], image_height=WINDOW[1], on_update=lambda callback: None)
+        tab = SimpleNamespace(scene=server.scene, atomic=server.atomic, camera=camera)
+        stage = Stage(cast(viser.ClientHandle, tab), dark)
+        stage.show(trajectory)
+        stage.set_view(view)
+        start = server.initial_camera
+        start.fov, start.up = camera.fov, camera.up_direction
+        start.position, start.look_at = camera.position, camera.look_at
+        recording = server.get_scene_serializer()
+        for frame in range(int(duration * RATE) + 1):
+            if should_stop():
+                return None
+            stage.draw(frame / RATE)
+            recording.insert_sleep(1 / RATE)
+        return recording.as_html(dark_mode=dark)
+    finally:
+        with _silence():
+            server.stop()
+
+
+@contextmanager
+def _silence() -> Iterator[None]:
+    """Without viser's announcements, which go to rich's common console; several threads may be in here at once."""
+    console = rich.get_console()
+    console.quiet = True
+    try:
+        yield
+    finally:
+        console.quiet = False
+
+
+def _titled(page: str, title: str, dark: bool) -> str:
+    """The page with its name in the browser's tab and over the view."""
+    text = html.escape(title)
+    colour = "#e6e9ec" if dark else "#2b2f33"
+    caption = (
+        f'<div style="position: fixed; top: 0.8em; left: 1.2em; right: 1.2em; z-index: 5; pointer-events: none; '
+        f'text-align: center; font: 500 15px system-ui, sans-serif; color: {colour}">{text}</div>'
+    )
+    head, body = page.split("<title>Viser</title>", 1)
+    body, end = body.rsplit("</body>", 1)
+    return f"{head}<title>{text}</title>{body}{caption}</body>{end}"

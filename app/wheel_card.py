@@ -1,0 +1,92 @@
+"""The card of one wheel: what the road and the vehicle do to it at this moment."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import Any, Protocol
+
+import viser
+
+from app.callbacks import by_user
+from model.ride import WheelState
+
+WIDTH, HEIGHT, GAP = 236, 276, 14  # px; GAP from the view's edges
+ABSENT = "–"
+
+
+class Picker(Protocol):
+    """What the card asks of the session."""
+
+    def pick_wheel(self, wheel: int | None) -> None: ...
+
+    def fail(self, error: Exception) -> None: ...
+
+
+class WheelCard:
+    """A small panel in the view's upper right corner, there while a wheel is picked."""
+
+    def __init__(self, gui: viser.GuiApi, picker: Picker) -> None:
+        self._gui, self._picker = gui, picker
+        self._panel: viser.PanelHandle | None = None
+        self._text: Any = None
+        self.wheel: int | None = None
+
+    def pick(self, wheel: int | None) -> int | None:
+        """Turn to a wheel, in the model's order; None, or the one that is picked already: to none. The wheel then."""
+        self.wheel = None if wheel == self.wheel else wheel
+        if self.wheel is None and self._panel is not None:
+            self._panel.remove()
+            self._panel = None
+        elif self.wheel is not None and self._panel is None:
+            self._panel = self._gui.add_panel()
+            with self._panel.add_tab("Wheel"):
+                self._text = self._gui.add_html("")
+                close = self._gui.add_button("Close", color="gray")
+            close.on_click(by_user(lambda event: self._picker.pick_wheel(None), self._picker.fail))
+            self._panel.float(x=-GAP, y=GAP, width=WIDTH, height=HEIGHT)
+        return self.wheel
+
+    def show(self, state: WheelState, colour: str) -> None:
+        """Fill in the card; colour: the wheel's, CSS."""
+        if self._panel is not None:
+            self._text.content = card(state, colour)
+
+
+def card(state: WheelState, colour: str) -> str:
+    """HTML of a wheel's figures."""
+    family = "Road wheel" if state.name.startswith("R") else "Imaginary wheel"
+    in_air = state.penetration is None
+    rows = (
+        ("Normal load", _figure(state.normal_load / 1e3, 2, "kN")),
+        ("at rest", _figure(state.static_load / 1e3, 2, "kN")),
+        ("Share of all loads", _figure(_percent(state.load_share), 1, "%")),
+        ("Traction", _figure(state.traction / 1e3, 2, "kN")),
+        ("Share of torque", _figure(_percent(state.torque_share), 1, "%")),
+        ("Penetration", _figure(None if state.penetration is None else 1e3 * state.penetration, 1, "mm")),
+        ("Slip of the rim", _figure(state.slip_velocity, 3, "m/s")),
+        ("Arm in the hull", _figure(state.arm_angle, 2, "°")),
+    )
+    lines = "".join(f"<tr><td>{label}</td><td>{value}</td></tr>" for label, value in rows)
+    return (
+        f'<div class="trackride-wheel"><p><i style="background:{colour}"></i><b>{escape(state.name)}</b> {family}'
+        f"{' <em>in the air</em>' if in_air else ''}</p><table>{lines}</table></div>{STYLE}"
+    )
+
+
+def _percent(share: float | None) -> float | None:
+    return None if share is None else 100 * share
+
+
+def _figure(value: float | None, digits: int, unit: str) -> str:
+    return ABSENT if value is None else f"{value:.{digits}f}{'' if unit == '°' else ' '}{unit}".replace("-", "−")
+
+
+STYLE = """<style>
+  .trackride-wheel { padding: 0 0.8em 0.3em; font-size: 0.82em; line-height: 1.55; }
+  .trackride-wheel p { margin: 0 0 0.3em; white-space: nowrap; }
+  .trackride-wheel i { display: inline-block; width: 0.8em; height: 0.8em; border-radius: 50%; margin-right: 0.5em; }
+  .trackride-wheel em { font-style: normal; font-weight: 550; color: #e03131; float: right; }
+  .trackride-wheel table { width: 100%; border-collapse: collapse; }
+  .trackride-wheel td { padding: 0; white-space: nowrap; }
+  .trackride-wheel td + td { text-align: right; font-variant-numeric: tabular-nums; }
+</style>"""

@@ -1,0 +1,141 @@
+"""Undo and redo, and the runs that are kept: pure, without a tab."""
+
+from __future__ import annotations
+
+import pytest
+
+import app.history
+from app.history import REST, RUN_COLOURS, RUNS, Changes, Runs, run_name, size
+from app.runner import Wish
+from model.config import load_config
+from tests.app.conftest import make_run
+
+PAPER, HALF_ROUND = load_config("paper"), load_config("half_round")
+SPEED, AMPLITUDE = "drive.speed_kmh", "road.amplitude"
+
+
+def faster(speed: float) -> Wish:
+    return Wish(PAPER).changed(SPEED, speed)
+
+
+def test_each_rested_change_is_a_step_back_and_forth():
+    changes = Changes(Wish(PAPER))
+    changes.note(faster(20), 10.0)
+    changes.note(faster(20).changed(AMPLITUDE, 0.2), 20.0)
+    assert changes.go(-1).changes == {SPEED: 20}
+    assert changes.go(-1).changes == {}
+    assert changes.go(-1) is None
+    assert changes.go(+2).changes == {SPEED: 20, AMPLITUDE: 0.2}
+    assert changes.go(+1) is None
+
+
+def test_a_drag_is_one_step():
+    changes = Changes(Wish(PAPER))
+    for k in range(50):
+        changes.note(faster(16 + k), 10 + k * REST / 2)
+    assert changes.present.changes == {SPEED: 65}
+    assert changes.go(-1).changes == {}
+
+
+def test_quick_changes_of_two_parameters_are_two_steps():
+    changes = Changes(Wish(PAPER))
+    changes.note(faster(20), 10.0)
+    changes.note(faster(20).changed(AMPLITUDE, 0.2), 10.1)
+    changes.note(faster(20).changed(AMPLITUDE, 0.25), 10.2)
+    assert changes.go(-1).changes == {SPEED: 20}
+
+
+def test_two_presets_loaded_quickly_are_two_steps():
+    changes = Changes(Wish(PAPER))
+    changes.note(Wish(HALF_ROUND), 10.0)
+    changes.note(Wish(load_config("short_waves")), 10.1)
+    assert changes.go(-1).base == HALF_ROUND
+
+
+def test_a_change_after_undo_forgets_what_was_undone_and_does_not_join_the_step_before():
+    changes = Changes(Wish(PAPER))
+    changes.note(faster(20), 10.0)
+    changes.note(faster(30), 20.0)
+    changes.go(-1)
+    changes.note(faster(20), 20.1)  # the run of what was gone back to
+    changes.note(faster(40), 25.0)
+    assert changes.go(+1) is None
+    assert changes.go(-1).changes == {SPEED: 20}
+    assert changes.go(-1).changes == {}
+
+
+def test_a_reset_in_the_middle_of_a_drag_is_a_step_of_its_own():
+    changes = Changes(Wish(PAPER))
+    changes.note(faster(20), 10.0)
+    changes.note(faster(30), 20.0)
+    changes.note(Wish(PAPER), 20.1)
+    assert changes.go(-1).changes == {SPEED: 30}
+
+
+def test_steps_are_bounded(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(app.history, "STEPS", 5)
+    changes = Changes(Wish(PAPER))
+    for k in range(20):
+        changes.note(faster(10 + k), 10.0 * k)
+    assert changes.go(-100).changes == {SPEED: 24}
+
+
+def test_a_run_is_named_after_its_changes_in_shown_units():
+    assert run_name(Wish(PAPER)) == PAPER.name
+    assert run_name(faster(22)) == "Speed 15 → 22 km/h"
+    assert run_name(faster(15)) == PAPER.name  # as it was
+    both = Wish(PAPER).changed("vehicle.road_suspension.damping", 2366.0).changed(AMPLITUDE, 0.15)
+    assert run_name(both) == "Road damping 4.732 → 2.366 kN s/m, Amplitude 100 → 150 mm"
+    many = both.changed(SPEED, 22).changed("contact.friction", 0.5)
+    assert run_name(many).endswith(" and 2 more")
+    assert run_name(Wish(PAPER).changed("vehicle.imaginary_wheels.enabled", False)) == "Imaginary wheels on → off"
+    flat = run_name(Wish(PAPER).changed("road.type", "flat"))
+    assert flat == "Road type sine → flat"
+    assert "automatic → 3" in run_name(Wish(PAPER).changed("road.start", 3.0))
+
+
+def test_runs_are_told_apart_and_kept_once():
+    runs = Runs()
+    first = runs.keep(Wish(PAPER), make_run(PAPER))
+    second = runs.keep(faster(20), make_run(faster(20).config()))
+    assert first.colour != second.colour
+    assert [kept.number for kept in runs] == [1, 2]
+    assert runs.keep(faster(20), make_run(faster(20).config())) is second
+    assert runs.find(PAPER) is first
+    assert runs.find(HALF_ROUND) is None
+
+
+def test_a_run_is_renamed_and_gets_its_old_name_back():
+    runs = Runs()
+    runs.keep(faster(20), make_run(faster(20).config()))
+    kept = runs.rename(1, "  the\nquick one ")
+    assert (kept.name, kept.named) == ("the quick one", True)
+    assert runs.rename(1, "x" * 1000).name == "x" * app.history.NAME_LIMIT
+    kept = runs.rename(1, " ")
+    assert (kept.name, kept.named) == ("Speed 15 → 20 km/h", False)
+
+
+def test_the_oldest_unnamed_run_makes_room():
+    runs = Runs()
+    for k in range(RUNS):
+        runs.keep(faster(10 + k), make_run(faster(10 + k).config(), samples=2))
+    runs.rename(1, "mine")
+    runs.keep(faster(60), make_run(faster(60).config(), samples=2))
+    numbers = [kept.number for kept in runs]
+    assert len(numbers) == RUNS
+    assert 1 in numbers
+    assert 2 not in numbers
+    runs.delete(1)
+    assert len(runs) == RUNS - 1
+    assert len({kept.colour for kept in runs}) == len(RUN_COLOURS)
+
+
+def test_memory_is_bounded_even_when_all_runs_are_named(monkeypatch: pytest.MonkeyPatch):
+    run = make_run(samples=100)
+    monkeypatch.setattr(app.history, "MEMORY", 2.5 * size(run))
+    runs = Runs()
+    for k in range(4):
+        runs.keep(faster(10 + k), make_run(faster(10 + k).config(), samples=100), name=f"run {k}")
+    assert [kept.number for kept in runs] == [3, 4]
+    huge = runs.keep(faster(90), make_run(faster(90).config(), samples=1000))
+    assert list(runs) == [huge]  # the newest stays, however large

@@ -1,0 +1,161 @@
+"""Ghost, marks, a drive in the 3-D view and the card of a wheel, without a browser."""
+
+from __future__ import annotations
+
+import asyncio
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from app.ghost import Outline
+from app.marks import IN_AIR, ring_looks, scale_bar, static_marks, traction_arrows, travel_bars
+from app.scene import Scene, build_scene, live_scene
+from app.stage import Stage
+from app.wheel_card import card
+from assets.solids import light
+from model import Trajectory, load_config, simulate
+from model.live import REBASE, LiveDrive
+from model.ride import suspension_travel, wheel_state
+from tests.app.test_stage import Tab, drawn, tab
+
+__all__ = ["tab"]  # a fixture
+
+
+def run(**changes: object) -> Trajectory:
+    return simulate(load_config("paper").replace({"simulation.duration": 4.0, **changes}))
+
+
+@pytest.fixture(scope="module")
+def scene() -> Scene:
+    return build_scene(run())
+
+
+def flight(scene: Scene) -> tuple[float, int]:
+    """A time at which a wheel is in the air, and which wheel."""
+    sample, wheel = np.argwhere(scene.trajectory.normal_load[200:] <= 0.0)[0]
+    return float(scene.trajectory.t[200 + sample]), int(wheel)
+
+
+def test_a_load_at_rest_ends_at_its_mark(scene: Scene) -> None:
+    now = scene.at(0.0)
+    marks, W = static_marks(scene, now), len(scene.system.wheel)
+    middle = marks[:W].mean(axis=1)
+    np.testing.assert_allclose(middle[:, ::2], now.arrows[:W, 1, ::2], atol=2e-3)
+    twice = static_marks(scene, scene.at(0.0, 2.0))[:W].mean(axis=1)
+    np.testing.assert_allclose(twice[:, 2] - now.arrows[:W, 0, 2], 2 * (middle[:, 2] - now.arrows[:W, 0, 2]), rtol=1e-3)
+
+
+def test_traction_points_along_the_road_the_way_it_pushes(scene: Scene) -> None:
+    time = 3.0
+    now, W = scene.at(time), len(scene.system.wheel)
+    way = np.diff(traction_arrows(scene, now)[:W], axis=1)[:, 0, ::2]
+    drawn_ones = np.hypot(*way.T) > 0.0
+    assert drawn_ones.any()
+    assert np.all(np.sign(way[drawn_ones, 0]) == np.sign(now.contacts.traction[drawn_ones]))
+    assert np.abs((way * now.contacts.normals).sum(axis=1)).max() < 1e-5
+
+
+def test_only_wheels_in_the_air_have_the_red_ring(scene: Scene) -> None:
+    time, wheel = flight(scene)
+    now, W = scene.at(time), len(scene.system.wheel)
+    flying = now.contacts.load <= 0.0
+    assert flying[wheel]
+    assert not flying.all()
+    colours, sizes = ring_looks(scene, now, in_air=True, coloured=False)
+    np.testing.assert_array_equal(sizes[:W] > 0.0, flying)
+    np.testing.assert_array_equal(colours[wheel], np.round(255 * light(np.array(IN_AIR))))
+    colours, sizes = ring_looks(scene, now, in_air=False, coloured=True)
+    np.testing.assert_array_equal(sizes[W:] > 0.0, ~flying)
+    assert len(np.unique(colours[:W][~flying], axis=0)) > 3
+
+
+def test_travel_bars_are_as_long_as_the_wheels_have_moved(scene: Scene) -> None:
+    travel, n = suspension_travel(scene.trajectory), scene.system.n
+    bars = travel_bars(scene, scene.at(2.0))[:n]
+    np.testing.assert_allclose(np.linalg.norm(bars[:, 1] - bars[:, 0], axis=1), np.ptp(travel, axis=0), atol=1e-5)
+
+
+def test_the_scale_bar_is_a_metre(scene: Scene) -> None:
+    start, end = scale_bar(scene.layout)[0]
+    assert np.linalg.norm(end - start) == pytest.approx(1.0, abs=1e-6)
+
+
+def test_the_ghost_of_the_same_run_lies_on_the_vehicle(scene: Scene) -> None:
+    now = scene.at(3.0)
+    points = Outline(scene).segments(scene.bodies(3.0), -now.origin).reshape(-1, 3)
+    for wheel in now.road_wheels.positions[: scene.system.n]:
+        distance = np.hypot(*(points[:, ::2] - wheel[::2]).T)
+        assert (np.abs(distance - scene.layout.radius) < 1e-4).sum() >= 64
+
+
+def test_a_ghost_is_there_until_it_is_taken_away_and_hidden_in_a_drive(tab: Tab) -> None:
+    stage = Stage(tab)  # type: ignore[arg-type]
+    present, other = run(), run(**{"drive.speed_kmh": 25.0})
+    stage.show(present)
+    stage.show_ghost(other)
+    stage.draw(3.0)
+    assert drawn(tab.sent(), "/ghost/hull", "batched_positions")[0, 0] == pytest.approx(
+        foot_in_view(build_scene(other), 3.0), abs=1e-4
+    )
+    drive = LiveDrive(load_config("paper"))
+    drive.advance(0.1)
+    stage.show_live(drive.recent(0.1), drive.road())
+    stage.draw(0.1)
+    assert not tab.scene._handle_from_node_name["/ghost"].visible
+    stage.show(present)
+    assert tab.scene._handle_from_node_name["/ghost"].visible
+    stage.show_ghost(None)
+    assert not any(name.startswith("/ghost") for name in tab.nodes())
+
+
+def foot_in_view(scene: Scene, time: float) -> float:
+    """x of the hull's foot point from its centre of mass, m: where it stands in a view that follows."""
+    now = scene.at(time)
+    return float(now.hull.positions[0, 0])
+
+
+def test_a_drive_goes_on_where_its_origin_moves_along() -> None:
+    drive = LiveDrive(load_config("paper"))
+    drive.advance(0.5)
+    recent, road = drive.recent(0.1), drive.road()
+    before = live_scene(recent, road)
+    drive._move_origin(REBASE)
+    after = live_scene(drive.recent(0.1), drive.road(), before)
+    assert after.passed == REBASE
+    one, other = before.at(0.5), after.at(0.5)
+    assert other.x == pytest.approx(one.x - REBASE)
+    for name in ("hull", "road_wheels", "sprockets", "shoes"):
+        for mine, its in zip(getattr(one, name), getattr(other, name), strict=True):
+            np.testing.assert_allclose(np.abs(mine), np.abs(its), atol=2e-3)
+    np.testing.assert_allclose(one.contacts.points, other.contacts.points, atol=1e-6)
+
+
+def test_the_road_of_a_drive_is_laid_once_for_many_instants(tab: Tab) -> None:
+    drive, stage = LiveDrive(load_config("paper")), Stage(tab)  # type: ignore[arg-type]
+    drive.advance(0.1)
+    stage.show_live(drive.recent(0.1), drive.road())
+    ground = stage._scene.ground  # type: ignore[union-attr]
+    drive.advance(0.2)
+    stage.show_live(drive.recent(0.1), drive.road())
+    assert stage._scene.ground is ground  # type: ignore[union-attr]
+
+
+def test_a_wheel_s_card_says_when_it_is_in_the_air(scene: Scene) -> None:
+    time, wheel = flight(scene)
+    text = card(wheel_state(scene.trajectory, wheel, time), "#123456")
+    assert all(part in text for part in ("in the air", "0.00 kN", "#123456", "–"))
+    rolling = card(wheel_state(scene.trajectory, 2, 0.0), "#123456")
+    assert "R3" in rolling
+    assert "in the air" not in rolling
+
+
+@pytest.mark.parametrize(("row", "wheel"), [(0, 0), (5, 5), (6, None), (7, 0), (12, 5)])
+def test_a_click_picks_the_wheel_on_either_side_and_no_idler(tab: Tab, row: int, wheel: int | None) -> None:
+    stage = Stage(tab)  # type: ignore[arg-type]
+    picked: list[int] = []
+    stage.on_pick(picked.append)
+    stage.show(run(**{"simulation.duration": 0.1}))
+    clicked = tab.scene._handle_from_node_name["/vehicle/road_wheels"]._impl.click_cb[0].callback
+    asyncio.run(clicked(SimpleNamespace(instance_index=row)))  # type: ignore[arg-type]
+    assert picked == ([] if wheel is None else [wheel])

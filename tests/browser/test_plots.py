@@ -1,0 +1,93 @@
+"""The plots as a user sees them: one cursor, one zoom, values at the cursor, and what stands in the other tabs."""
+
+from __future__ import annotations
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.browser.driver import Explorer
+
+CHARTS = """() => Object.values(__viserTestpoints.uplots).map(entry => entry.chart)
+    .filter(chart => chart.over.offsetParent && chart.cursor.sync.key === 'trackride-time')"""
+RANGES = f"() => ({CHARTS})().map(chart => [chart.scales.x.min, chart.scales.x.max])"
+CURSORS = f"""() => ({CHARTS})().map(chart => {{
+    const line = chart.over.querySelector('.trackride-marks i');
+    return chart.posToVal(new DOMMatrix(getComputedStyle(line).transform).m41, 'x');
+}})"""
+VALUES = f"""() => ({CHARTS})().map(chart => [...chart.root.querySelectorAll('.u-series:not(.static) .u-value')]
+    .slice(1).map(value => parseFloat(value.textContent)))"""
+
+
+def show(page: Page, tab: str) -> None:
+    page.get_by_role("tab", name=tab, exact=True).click()
+
+
+@pytest.fixture(scope="module")
+def page(browser, address) -> Page:
+    context = browser.new_context(viewport={"width": 1600, "height": 900})
+    explorer = Explorer(context.new_page()).open(f"{address}/?fixedDpr=0.5")
+    explorer.button("Pause").click()
+    explorer.press("Time", "Home")
+    yield explorer.page
+    context.close()
+
+
+def test_zoom_in_one_plot_is_the_zoom_of_all_over_tabs_and_runs(page):
+    explorer = Explorer(page)
+    show(page, "Loads")
+    box = page.locator(".u-over:visible").first.bounding_box()
+    assert box is not None
+    y = box["y"] + box["height"] / 2
+    page.mouse.move(box["x"] + 0.3 * box["width"], y)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.6 * box["width"], y, steps=4)
+    page.mouse.up()
+    zoomed = f"() => ({RANGES})().every(([from, to]) => Math.abs(from - 3) < 0.1 && Math.abs(to - 6) < 0.1)"
+    page.wait_for_function(zoomed)
+    show(page, "Ride")
+    page.wait_for_function(f"() => ({RANGES})().length === 4")
+    page.wait_for_function(zoomed)
+    before = explorer.run_number()
+    curves = page.locator(".uplot canvas:visible").first.evaluate("canvas => canvas.toDataURL()")
+    explorer.press("Speed", "ArrowRight")
+    explorer.wait_for_run(after=before)
+    page.wait_for_function(
+        "old => [...document.querySelectorAll('.uplot canvas')].find(c => c.offsetParent).toDataURL() !== old",
+        arg=curves,
+    )
+    page.wait_for_function(zoomed)
+    page.locator(".u-over:visible").first.dblclick()
+    page.wait_for_function(f"() => ({RANGES})().every(([from, to]) => from < 0.1 && to > 9.9)")
+
+
+def test_one_cursor_goes_through_all_plots_and_the_values_at_it_are_shown(page):
+    explorer = Explorer(page)
+    for tab, plots in (("Loads", 3), ("Ride", 4)):
+        show(page, tab)
+        explorer.press("Time", "Home")
+        page.wait_for_function(
+            f"() => ({CURSORS})().length === {plots} && ({CURSORS})().every(t => Math.abs(t) < 0.05)"
+        )
+        explorer.press("Time", "End")
+        page.wait_for_function(f"() => ({CURSORS})().every(t => Math.abs(t - 10) < 0.05)")
+        page.wait_for_function(f"() => ({VALUES})().flat().every(value => Number.isFinite(value))")
+        assert [len(values) for values in page.evaluate(VALUES)] == ([6, 5, 1] if tab == "Loads" else [1, 1, 1, 6])
+
+
+def test_the_other_tabs_show_spectrum_map_trust_and_equations(page):
+    show(page, "Spectrum")
+    names = page.locator(".trackride-frequency .trackride-marks i")
+    expect(names).to_have_count(3)
+    assert "Bounce" in names.first.get_attribute("data-name")
+    show(page, "Load map")
+    pictures = page.locator(".trackride-map img")
+    expect(pictures).to_have_count(2)
+    assert [picture.evaluate("img => img.naturalHeight") for picture in pictures.all()] == [6, 5]
+    cursor, field = (page.locator(f".trackride-map .field{part}").first.bounding_box() for part in (" i", ""))
+    assert field["x"] - 2 <= cursor["x"] <= field["x"] + field["width"] + 2
+    show(page, "Trust")
+    expect(page.get_by_text("Energy unaccounted for")).to_be_visible()
+    expect(page.locator(".trackride-facts .good")).to_have_count(3)
+    show(page, "About")
+    expect(page.locator(".trackride-formula sub").first).to_be_visible()
+    assert page.locator(".trackride-parameters:visible").count() == 7
