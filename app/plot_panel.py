@@ -33,8 +33,9 @@ CALM = 0.3  # s
 class PlotPanel:
     """Tabs in a panel of `gui`. `runs_tab` is left empty, for others to fill."""
 
-    def __init__(self, gui: viser.GuiApi, panel: Any, page_height: int, dark: bool) -> None:
-        self._page_height, self._dark = page_height, dark
+    def __init__(self, gui: viser.GuiApi, panel: Any, page_height: int, dark: bool, flush: Callable[[], None]) -> None:
+        """flush: sends at once what has been changed, so that the page draws the loads before it gets the rest."""
+        self._page_height, self._dark, self._flush = page_height, dark, flush
         self._run: Trajectory | None = None
         self._baseline: Trajectory | None = None
         self._driving = False
@@ -111,6 +112,7 @@ class PlotPanel:
             (self._ride, ride_plots(run, palette, self._baseline, wheel)),
         ):
             charts.show(plots, chart_height(self._page_height, len(plots)))
+            self._flush()
 
     def _show_spectrum(self, run: Trajectory) -> None:
         found: tuple[Mark, ...] = ()

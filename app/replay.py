@@ -104,4 +104,4 @@ def _titled(page: str, title: str, dark: bool) -> str:
     )
     head, body = page.split("<title>Viser</title>", 1)
     body, end = body.rsplit("</body>", 1)
-    return f"{head}<title>{text}</title>{body}{caption}</body>{end}"
+    return f"{head}<title>{text}</title>{body}{caption}{AT_ONCE}</body>{end}"

@@ -104,7 +104,7 @@ class Window:
                 self._view = ViewPanel(gui, dark, actions)
                 self.exports = ExportsPanel(gui, actions)
             self._plots_panel = gui.add_panel()
-            self._plots = PlotPanel(gui, self._plots_panel, layout.page_height, dark)
+            self._plots = PlotPanel(gui, self._plots_panel, layout.page_height, dark, client.flush)
             self.runs = RunsPanel(gui, self._plots.runs_tab, actions)
             self._plots_panel.dock_right()
             self._player = PlaybackPanel(gui, actions)
@@ -121,7 +121,6 @@ class Window:
         run = done.trajectory
         self._run, self._run_number, self._drive = run, done.wish.number, None
         self._plot(time)
-        self._client.flush()
         self.scene.show(run)
         self._drawn = None
         if settled:
@@ -140,7 +139,6 @@ class Window:
         if before is None or before.past is not state.past:
             self._run = state.past
             self._plot(state.time)
-            self._client.flush()
         self.scene.show_live(state.recent, state.road)
         self.scene.draw(state.time)
         if settled and (before is None or before.config != state.config):

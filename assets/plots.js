@@ -7,7 +7,7 @@ if (!window.trackridePlots) {
   const charts = () => Object.values(window.__viserTestpoints?.uplots ?? {}).map((entry) => entry.chart);
   const group = (key) => (key ?? '').startsWith('trackride-') ? groups[key] ??= {marks: [], zoom: [0, 1]} : undefined;
   const groupOf = (chart) => group(chart.cursor.sync?.key);
-  const seen = (chart) => chart.over.offsetParent !== null;
+  const seen = (chart) => chart.width > 0;  // in a tab behind they are 0 px wide; asking for places would lay out the page
 
   const point = (chart) => {
     let layer = chart.over.querySelector('.trackride-marks');

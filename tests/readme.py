@@ -20,10 +20,17 @@ def filled(text: str, mark: str, content: str) -> str:
     return f"{head}<!-- {mark}{comment}-->\n\n{content.strip()}\n\n<!-- end of {mark} -->{tail}"
 
 
+def figure_text(value: float) -> str:
+    """Three digits, without powers of ten."""
+    return f"{float(f'{value:.3g}'):,.10g}"
+
+
 def benchmark_table() -> str:
     """The newest kept figures, as Markdown."""
     kept = max((json.loads(path.read_text()) for path in RESULTS.glob("*.json")), key=lambda kept: kept["date"])
-    rows = [f"| {what} | {figure['median']:.3g} {figure['unit']} |" for what, figure in kept["figures"].items()]
+    rows = [
+        f"| {what} | {figure_text(figure['median'])} {figure['unit']} |" for what, figure in kept["figures"].items()
+    ]
     return "\n".join([f"On {kept['machine']}, {kept['date']}:", "", "| What | Median |", "| --- | --- |", *rows])
 
 

@@ -190,7 +190,7 @@ def test_the_state_comes_back_with_the_browser(explore: Any, open_tab: Any) -> N
     tab.close()
     again: Tab = open_tab(explorer, storage=storage)
     wait_for(lambda: again.widget(SPEED)["value"] == 26, "the speed of the last visit")
-    assert again.widget("Preset")["value"] == "Mine"
+    wait_for(lambda: again.widget("Preset")["value"] == "Mine", "the preset")
     assert again.widget("Road type")["value"] == "half round"
     again.use("Parameters", "Reset")
     wait_for(lambda: again.widget(SPEED)["value"] == 25)

@@ -174,7 +174,7 @@ def test_an_uploaded_configuration_is_run_and_can_be_undone(tab: Tab) -> None:
     wait_for(lambda: tab.widget("Preset")["value"] == "My tank")
     tab.use("Parameters", "Undo")
     wait_for(lambda: tab.widget("Speed, km/h")["value"] == 22)
-    assert tab.widget("Preset")["value"] == "Paper vehicle"
+    wait_for(lambda: tab.widget("Preset")["value"] == "Paper vehicle", "the preset")
 
 
 def test_faults_of_an_uploaded_configuration_are_all_shown_escaped_and_nothing_changes(tab: Tab) -> None:

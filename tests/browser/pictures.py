@@ -23,6 +23,7 @@ def open_at_rest(explorer: Explorer, address: str) -> None:
     notice = explorer.page.locator(".mantine-Notification-closeButton")
     if notice.count():  # that WebGL runs in software
         notice.first.click()
+    explorer.page.wait_for_timeout(4000)  # to where the waves are in full height
     explorer.button("Pause").click()
     explorer.page.wait_for_timeout(1000)
 
@@ -44,8 +45,8 @@ def main() -> None:
         take(explorer, "comparison")
 
         page.get_by_text("Suspension", exact=True).click()
-        page.get_by_text("View", exact=True).click()
-        page.get_by_label("Dark").check(force=True)
+        page.get_by_text("View", exact=True).first.click()
+        page.get_by_text("Dark", exact=True).click()
         page.locator(".trackride-status").click()  # no box has the keys any more
         page.keyboard.press("2")
         page.get_by_role("tab", name="Spectrum").click()
