@@ -21,7 +21,7 @@ from model.simulate import starting_state
 from model.vehicle import build_system
 
 REPEATS = 15
-DENSE_TIME = 0.1  # s of simulated time with the dense equations, which are far too slow for the whole run
+DENSE_TIME = 0.02  # s of simulated time with the dense equations, which are far too slow for the whole run
 
 
 def cores() -> int:

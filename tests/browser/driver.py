@@ -35,12 +35,12 @@ def running_explorer(*arguments: str) -> Iterator[str]:
 
 
 @contextmanager
-def chromium() -> Iterator[Browser]:
-    """Chromium with WebGL in software."""
+def chromium(*flags: str) -> Iterator[Browser]:
+    """Chromium with WebGL in software, and with more flags."""
     path = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
     assert path, "no Chromium was found: `make chromium` installs one"
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=path, args=FLAGS)
+        browser = playwright.chromium.launch(executable_path=path, args=[*FLAGS, *flags])
         yield browser
         browser.close()
 

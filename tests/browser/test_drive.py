@@ -24,7 +24,7 @@ def seconds(explorer: Explorer) -> int:
 def wait_until(explorer: Explorer, condition: Callable[[], bool]) -> None:
     end = monotonic() + SOON / 1000
     while not condition():
-        assert monotonic() < end, f"waited in vain; the player says {driven(explorer)!r}"
+        assert monotonic() < end, "waited in vain"
         explorer.page.wait_for_timeout(100)
 
 

@@ -112,3 +112,19 @@ def test_memory_does_not_grow():
     drive_on(drive, 60.0, frame=0.1)
     assert len(drive.recent().t) < early + 30
     assert drive.recent().t[-1] == pytest.approx(65, abs=0.1)
+
+
+def test_the_last_moments_are_the_end_of_the_past():
+    drive = LiveDrive(PAPER)
+    drive_on(drive, 2.0)
+    recent, last = drive.recent(), drive.recent(0.1)
+    assert last.t[-1] - last.t[0] == pytest.approx(0.1, abs=1 / 30 + 0.01)
+    np.testing.assert_array_equal(last.q, recent.q[-len(last.t) :])
+
+
+def test_frames_shorter_than_a_sample_do_no_harm():
+    drive = LiveDrive(PAPER, remembered=0.05)
+    drive_on(drive, 0.2, frame=0.001)
+    recent = drive.recent()
+    assert np.diff(recent.t) == pytest.approx(0.005)
+    assert recent.t[-1] == pytest.approx(0.2, abs=0.01)
