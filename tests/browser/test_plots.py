@@ -83,8 +83,13 @@ def test_the_other_tabs_show_spectrum_map_trust_and_equations(page):
     pictures = page.locator(".trackride-map img")
     expect(pictures).to_have_count(2)
     assert [picture.evaluate("img => img.naturalHeight") for picture in pictures.all()] == [6, 5]
-    cursor, field = (page.locator(f".trackride-map .field{part}").first.bounding_box() for part in (" i", ""))
-    assert field["x"] - 2 <= cursor["x"] <= field["x"] + field["width"] + 2
+    page.wait_for_function(
+        """() => {
+          const box = (css) => document.querySelector(css).getBoundingClientRect();
+          const cursor = box(".trackride-map .field i"), field = box(".trackride-map .field");
+          return field.left - 2 <= cursor.left && cursor.left <= field.right + 2;
+        }"""
+    )
     show(page, "Trust")
     expect(page.get_by_text("Energy unaccounted for")).to_be_visible()
     expect(page.locator(".trackride-facts .good")).to_have_count(3)
