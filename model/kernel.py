@@ -369,6 +369,15 @@ def multipliers(system, dy, work, lam):
         work.F[0] = -lam[-1]
 
 
+@inlined
+def _turned(angle, u):
+    """u turned by an angle; wheels, jointed at their centres (u = 0), may have turned far."""
+    if u[0] == 0.0 and u[1] == 0.0:
+        return 0.0, 0.0
+    cos, sin = cos_sin(angle)
+    return cos * u[0] - sin * u[1], sin * u[0] + cos * u[1]
+
+
 @compiled
 def constraint_residual(system, t, y):
     """max |C(q, t)|, m."""
@@ -376,11 +385,9 @@ def constraint_residual(system, t, y):
     worst = 0.0
     for joint in range(len(system.joint_i)):
         i, j = system.joint_i[joint], system.joint_j[joint]
-        u_i, u_j = system.u_i[joint], system.u_j[joint]
-        c_i, s_i = np.cos(y[2 * B + i]), np.sin(y[2 * B + i])
-        c_j, s_j = np.cos(y[2 * B + j]), np.sin(y[2 * B + j])
-        C_x = y[i] + c_i * u_i[0] - s_i * u_i[1] - y[j] - c_j * u_j[0] + s_j * u_j[1]
-        C_y = y[B + i] + s_i * u_i[0] + c_i * u_i[1] - y[B + j] - s_j * u_j[0] - c_j * u_j[1]
+        i_x, i_y = _turned(y[2 * B + i], system.u_i[joint])
+        j_x, j_y = _turned(y[2 * B + j], system.u_j[joint])
+        C_x, C_y = y[i] + i_x - y[j] - j_x, y[B + i] + i_y - y[B + j] - j_y
         worst = max(worst, abs(C_x), abs(C_y))
     if system.prescribed:
         worst = max(worst, abs(y[0] - system.x_0 - system.v_ref * t))

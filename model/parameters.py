@@ -97,7 +97,7 @@ ROAD, DRIVE, SOLVER, NOTES = "Road", "Drive", "Solver", "Notes"
 GROUPS = (SUSPENSION, TRACK, VEHICLE, CONTACT, ROAD, DRIVE, SOLVER, NOTES)
 
 INTEGRATORS = (
-    "dormand-prince", "rk4", "scipy-rk45", "scipy-dop853", "scipy-radau", "scipy-lsoda", "scipy-bdf",
+    "stretched-rk43", "dormand-prince", "rk4", "scipy-rk45", "scipy-dop853", "scipy-radau", "scipy-lsoda", "scipy-bdf",
 )  # fmt: skip
 KILO_N_PER_M, KILO_N_S_PER_M, MILLIMETRES = ("kN/m", 1e-3), ("kN s/m", 1e-3), ("mm", 1e3)
 TORSIONAL = {  # unit of a rate at the wheel -> unit and shown unit of the rate about the joint
@@ -315,10 +315,11 @@ PARAMETERS: tuple[Parameter, ...] = (
         group=SOLVER, source=OURS,
         description="Stored samples for each second.",
         growth="Short peaks show more fully; files get larger. The motion stays the same."),
-    Parameter("simulation.integrator", "Integrator", "", "", "dormand-prince",
+    Parameter("simulation.integrator", "Integrator", "", "", "stretched-rk43",
         group=SOLVER, source=OURS, kind="choice", choices=INTEGRATORS,
-        description="dormand-prince: order 5(4), chooses its own steps; rk4: order 4, fixed step; scipy-…: SciPy's "
-        "methods, slower, for comparison."),
+        description="stretched-rk43: order 4(3), chooses its own steps, longer ones than others in the stiff contacts; "
+        "dormand-prince: order 5(4), chooses its own steps; rk4: order 4, fixed step; scipy-…: SciPy's methods, "
+        "slower, for comparison."),
     Parameter("simulation.step", "Fixed step", "h", "s", 0.001, 1e-6, 0.1, 0.0001, 0.005, 0.0001,
         group=SOLVER, source=OURS, shown=("ms", 1000),
         description="Step of the rk4 integrator; the others choose their own.",
