@@ -104,6 +104,19 @@ def cos_sin(angle):
 
 
 @inlined
+def _beyond_linear(system, i, u, u_dot):
+    """What a road arm's progressive spring, rebound damping and stops add to eq. (1)."""
+    tau = system.k_s[i] * system.p[i] * u * u * u
+    if u_dot < 0.0:
+        tau += (system.c_rebound[i] - system.c_s[i]) * u_dot
+    if u > system.bump:
+        tau += max(0.0, system.k_stop * (u - system.bump) + system.c_stop * u_dot)
+    elif u < system.rebound:
+        tau += min(0.0, system.k_stop * (u - system.rebound) + system.c_stop * u_dot)
+    return tau
+
+
+@inlined
 def _fold_arm(m, I, p_x, p_y, w_x, w_y, K_xx, K_xy, K_yy, b_x, b_y, F_y, tau):
     """An arm that carries (K, b = K γ + f) at w, seen from its pivot p (both from its centre of mass).
 
@@ -194,7 +207,10 @@ def rates(system, road, t, y, dy, work):
         tau_chassis = system.r * work.F[0]
     for i in range(n):
         arm = 1 + i
-        tau = system.k_s[i] * (theta[0] - theta[arm]) + system.c_s[i] * (omega[0] - omega[arm]) + system.tau_0[i]
+        u, u_dot = theta[0] - theta[arm], omega[0] - omega[arm]
+        tau = system.k_s[i] * u + system.c_s[i] * u_dot + system.tau_0[i]
+        if not system.linear:
+            tau += _beyond_linear(system, i, u, u_dot)
         work.tau[i] = tau
         tau_chassis -= tau
 

@@ -100,9 +100,11 @@ INTEGRATORS = (
     "stretched-rk43", "dormand-prince", "rk4", "scipy-rk45", "scipy-dop853", "scipy-radau", "scipy-lsoda", "scipy-bdf",
 )  # fmt: skip
 KILO_N_PER_M, KILO_N_S_PER_M, MILLIMETRES = ("kN/m", 1e-3), ("kN s/m", 1e-3), ("mm", 1e3)
-TORSIONAL = {  # unit of a rate at the wheel -> unit and shown unit of the rate about the joint
+# Unit of a rate at the wheel -> unit and shown unit of the rate about the joint
+TORSIONAL: dict[str, tuple[str, tuple[str, float] | None]] = {
     "N/m": ("N m/rad", ("kN m/rad", 1e-3)),
     "N s/m": ("N m s/rad", ("kN m s/rad", 1e-3)),
+    "1/m²": ("1/rad²", None),
 }
 
 # fmt: off
@@ -186,6 +188,34 @@ PARAMETERS: tuple[Parameter, ...] = (
         group=SUSPENSION, source=PAPER_TABLE, shown=KILO_N_S_PER_M, per_wheel=True,
         description="Damping between hull and each road arm, at the wheel.",
         growth="Bounce and pitch die away sooner, but sharp obstacles hit the hull harder."),
+    Parameter("vehicle.road_suspension.progression", "Progression", "p", "1/m²", 0.0, 0, 10000, 0, 200, 1,
+        group=SUSPENSION, source=OURS,
+        description="How much the spring stiffens with its deflection z from the design pose: its force is "
+        "k_s z (1 + p z²); 0 is the paper's linear spring.",
+        growth="Large deflections meet a harder spring, so that arms turn less far; small ones feel no difference."),
+    Parameter("vehicle.road_suspension.rebound_ratio", "Rebound ratio", "", "", 1.0, 0, 20, 0, 5, 0.05,
+        group=SUSPENSION, source=OURS,
+        description="Damping while a wheel moves down in the hull, as a multiple of the damping while it moves up; "
+        "1 is the paper's damper.",
+        growth="Wheels fall into dips more slowly and the hull is drawn down over a row of bumps."),
+    Parameter("vehicle.road_suspension.bump_travel", "Bump stop at", "", "m", None, 0.01, 2, 0.03, 0.4, 0.005,
+        group=SUSPENSION, source=OURS, shown=MILLIMETRES, optional=True,
+        description="Travel of a wheel upwards in the hull, from the design pose, at which its arm meets the bump "
+        "stop; left out: no stop, as in the paper.",
+        growth="Wheels can rise further before the stop hits the hull."),
+    Parameter("vehicle.road_suspension.rebound_travel", "Rebound stop at", "", "m", None, 0.01, 2, 0.03, 0.4, 0.005,
+        group=SUSPENSION, source=OURS, shown=MILLIMETRES, optional=True,
+        description="Travel of a wheel downwards in the hull, from the design pose, at which its arm meets the "
+        "rebound stop; left out: no stop, as in the paper.",
+        growth="Wheels can follow the ground further down before they are held."),
+    Parameter("vehicle.road_suspension.stop_stiffness", "Stop stiffness", "", "N/m", 5e5, 100, 1e9, 1e4, 5e6, 1e4,
+        group=SUSPENSION, source=ASSUMED, shown=KILO_N_PER_M,
+        description="Stiffness of both stops, at the wheel, on top of the spring.",
+        growth="A stop gives way less and hits harder."),
+    Parameter("vehicle.road_suspension.stop_damping", "Stop damping", "", "N s/m", 1e4, 0, 1e7, 0, 1e5, 500,
+        group=SUSPENSION, source=ASSUMED, shown=KILO_N_S_PER_M,
+        description="Damping of both stops, at the wheel; a stop never pulls.",
+        growth="A stop throws the wheel back less, and its first blow is harder."),
     Parameter("vehicle.imaginary_wheels.enabled", "Imaginary wheels", "", "", True,
         group=TRACK, source=OURS, kind="flag",
         description="Whether imaginary wheels stand in for the track; without them only road wheels carry."),

@@ -19,6 +19,7 @@ ROWS = (
     ("model.validation", "model.road_table"),
     ("model.config",),
     ("model.vehicle",),
+    ("model.suspension",),
     ("model.road", "model.equilibrium", "model.trajectory"),
     ("model.equations", "model.kernel"),
     ("model.steppers",),
