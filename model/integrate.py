@@ -29,12 +29,14 @@ from model.steppers import (
     make_samples,
     record,
     runge_kutta_4,
+    stiffest_rate,
     trouble,
 )
 from model.vehicle import System
 
 LONGEST_STEP = 0.02  # s
 STIFF_STEP = 1e-3  # s
+STIFFER = 1.05  # than at first, when wheels sink in more deeply
 RADII_PER_STEP = 0.5  # no step runs past an obstacle
 
 REASON = {
@@ -61,12 +63,6 @@ SCIPY_METHODS = {
     "scipy-bdf": "BDF",
     "scipy-lsoda": "LSODA",
 }
-
-
-def stiffest_rate(system: System) -> float:
-    """About the largest −λ of the linearised system, 1/s: a sticking wheel, free but for the damping c_t of eq. (5)."""
-    wheel = system.wheel
-    return float((system.c_t * (system.r**2 / system.inertia[wheel] + 1 / system.mass[wheel])).max())
 
 
 class Integration:
@@ -97,9 +93,9 @@ class Integration:
         first_step = step if integrator == "rk4" else 1e-4
         self._clock = Clock(np.array([0.0, first_step, 1e-4, np.inf]), np.zeros(7, dtype=np.int64))
         self._scale = error_scale(system, rtol, atol)
-        self._stiffness = stiffest_rate(system)
         self._stages = np.zeros((7, len(y)))
         self._spare = np.zeros((2, len(y)))
+        self._stiffness = self._stiffest_rate()
 
     t = property(lambda self: float(self._clock.time[NOW]), doc="Simulated time so far, s.")
     status = property(lambda self: Status(int(self._clock.tally[STATUS])), doc="RUNNING until it ends.")
@@ -116,9 +112,9 @@ class Integration:
     def change(self, system: System, road: RoadTable, y: np.ndarray | None = None) -> None:
         """Carry on with other forces, another road or another state, of the same bodies."""
         self.system, self.road = system, road
-        self._stiffness = stiffest_rate(system)
         if y is not None:
             self.y = y.copy()
+        self._stiffness = self._stiffest_rate()
         self._clock.tally[FRESH] = 0
 
     def take_samples(self) -> tuple[np.ndarray, Samples]:
@@ -127,13 +123,17 @@ class Integration:
         self._clock.tally[TAKEN] = end
         return np.arange(first, end) / self.rate, Samples._make(part[: end - first].copy() for part in self.samples)
 
+    def _stiffest_rate(self) -> float:
+        """Largest −λ of the system linearised where it is now, 1/s."""
+        return stiffest_rate(self.system, self.road, self.t, self.y, self._work, self._stages, self._spare[0])
+
     def _longest(self) -> float:
-        """No step runs past an obstacle, or leaves the stepper's stability where wheels stick to the ground (stiffer
-        ones are left to the error control).
+        """No step runs past an obstacle, or leaves the stepper's stability (of a system that is stiffer than its steps
+        can be short, the error control takes care).
         """
         longest = min(LONGEST_STEP, RADII_PER_STEP * self.road.radius / max(abs(self.system.v_ref), 1e-3))
         tableau = ADAPTIVE.get(self.integrator)
-        return min(longest, max(tableau.reach / self._stiffness, STIFF_STEP)) if tableau else longest
+        return min(longest, max(tableau.reach / (STIFFER * self._stiffness), STIFF_STEP)) if tableau else longest
 
     def advance(self, t_stop: float) -> Status:
         """Carry on until t ≥ t_stop, the end, trouble, or 5000 steps; the GIL is free meanwhile."""

@@ -19,6 +19,8 @@ STEPS_PER_SECOND = 50_000  # of simulated time, at most; five hundred times what
 SMALLEST_STEP = 1e-9  # s
 FASTEST = 1e3  # m/s: a body faster than this shows that the run has diverged
 STEPS_PER_CHUNK = 5_000  # so that a stop is heeded however stiff the run
+POWERS = 30  # of the Jacobian, to find its largest eigenvalue to a few per cent
+NUDGE = 1e-6  # m, rad, m/s or rad/s: a change small enough for the system to be linear
 SIZE_OF_SPEED = 1.0  # m/s or rad/s, what rtol is measured against: see error_scale
 SIZE_OF_POSITION = 0.1  # m or rad
 SIZE_OF_DISPLACEMENT = 0.1  # m
@@ -117,6 +119,36 @@ def trouble(y, bodies):
     if not np.isfinite(total):
         return Status.NOT_FINITE.value
     return Status.RUNAWAY.value if fastest > FASTEST else Status.RUNNING.value
+
+
+@compiled
+def stiffest_rate(system, road, t, y, work, k, y_near):
+    """About the largest −λ, 1/s, of the right-hand side linearised at y, by power iteration; k: (3, size) or more.
+
+    Contacts and dampers make it stiff, and their eigenvalues are real.
+    """
+    size = len(y)
+    here, near, direction = k[0], k[1], k[2]
+    rates(system, road, t, y, here, work)
+    for i in range(size):
+        direction[i] = 1.0 + 0.1 * np.sin(7.0 * i)  # as good as any that no symmetry keeps from the one sought
+    stretch = 0.0
+    for _ in range(POWERS):
+        square = 0.0
+        for i in range(size):
+            square += direction[i] * direction[i]
+        shrink = NUDGE / np.sqrt(square)
+        for i in range(size):
+            direction[i] *= shrink
+            y_near[i] = y[i] + direction[i]
+        rates(system, road, t, y_near, near, work)
+        along = 0.0
+        for i in range(size):
+            change = near[i] - here[i]
+            along += direction[i] * change
+            direction[i] = change
+        stretch = -along / NUDGE**2
+    return max(stretch, 1.0)
 
 
 class Tableau(NamedTuple):
