@@ -76,7 +76,7 @@ def energy_balance(trajectory: Trajectory) -> EnergyBalance:
     turn_rate = v[:, system.spring_i, 2] - v[:, system.spring_j, 2]
     inertia = np.column_stack([system.mass, system.mass, system.inertia])
     kinetic = (inertia * v**2).sum(axis=(1, 2)) / 2
-    gravity = q[:, :, 1] @ system.mass * system.g
+    gravity = q[:, :, 1] @ system.weight
     springs = elastic(system, turn).energy.sum(axis=1)
     ground = (system.k_n / 3 * depth**3).sum(axis=1) + (system.k_t / 2 * xi**2).sum(axis=1)
 
@@ -111,7 +111,7 @@ def load_balance(trajectory: Trajectory) -> LoadBalance:
     system = trajectory.system
     normal = contact_motion(system, build_road(trajectory.config), trajectory.q, trajectory.v).normal
     force = trajectory.normal_load * normal[..., 1] - trajectory.traction * normal[..., 0]
-    return LoadBalance(force.sum(axis=1), (trajectory.a[:, :, 1] + system.g) @ system.mass)
+    return LoadBalance(force.sum(axis=1), trajectory.a[:, :, 1] @ system.mass + system.weight.sum())
 
 
 def _drive_power(trajectory: Trajectory) -> np.ndarray:

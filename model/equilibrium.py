@@ -37,7 +37,7 @@ def rest_pose(system: System) -> tuple[np.ndarray, np.ndarray]:
     spring = np.zeros((len(system.k_s), size))  # θ_i − θ_j
     spring[np.arange(len(spring)), column[system.spring_i]] += 1.0
     spring[np.arange(len(spring)), column[system.spring_j]] -= 1.0
-    weight = system.mass * system.g
+    weight = system.weight
     touching = np.zeros(B, dtype=bool)
     touching[system.wheel] = True
 

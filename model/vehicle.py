@@ -57,7 +57,7 @@ class System(NamedTuple):
     F_max: float  # N
     alpha: float  # Baumgarte, 1/s
     beta: float  # 1/s
-    g: float  # m/s²
+    weight: np.ndarray  # (B,) N, along −y
 
     @property
     def chassis(self) -> int:
@@ -178,7 +178,7 @@ def build_system(config: Config) -> System:
         F_max=drive.force_limit,
         alpha=simulation.baumgarte_alpha,
         beta=simulation.baumgarte_beta,
-        g=GRAVITY,
+        weight=mass * GRAVITY,
     )
     for array in system:
         if isinstance(array, np.ndarray):
