@@ -119,13 +119,13 @@ class Session:
 
     def step(self, steps: int) -> None:
         with self._lock:
-            if not self._driving:
-                self._playback.step(steps)
+            self._playback.step(steps)
+            self._pace()
 
     def scrub(self, time: float) -> None:
         with self._lock:
-            if not self._driving:
-                self._playback.scrub(time)
+            self._playback.scrub(time)
+            self._pace()
 
     def set_speed(self, speed: float) -> None:
         with self._lock:
@@ -136,6 +136,7 @@ class Session:
         """Drive on and on with the present parameters, or show their run."""
         with self._lock:
             self._driving, self._playback.playing = on, True
+            self._playback.look_back(0.0, 0.0)  # what was shown before has no time in common with what comes
             self._pace()
 
     def toggle_driving(self) -> None:
@@ -271,12 +272,15 @@ class Session:
                 self._good = outcome
                 self._window.show_run(outcome, time, settled=self._runner.latest.number == wish.number)
                 self._desk.finished(outcome, monotonic())
-            case Driven(wish):
+            case Driven(wish, state):
                 with self._lock:
                     if self._refused is not None and wish.number > self._refused.wish.number:
                         self._refused = None
+                    if self._driving:
+                        self._playback.look_back(float(state.past.t[0]), state.time)
+                    time = self._playback.time
                 self._good = outcome
-                self._window.show_drive(outcome, settled=self._runner.latest.number == wish.number)
+                self._window.show_drive(outcome, time, settled=self._runner.latest.number == wish.number)
                 self._desk.driven(wish, monotonic())
             case Refused():
                 with self._lock:
@@ -326,6 +330,7 @@ class Session:
                 dark=self._window.dark,
                 time=time,
                 playing=playing,
+                drive=self._good.state if isinstance(self._good, Driven) else None,
             ),
         )
 

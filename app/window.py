@@ -132,15 +132,19 @@ class Window:
             self._notify("diverged", "The run did not come to its end", body, "orange", stays=True)
         self._forget("refused")
 
-    def show_drive(self, driven: Driven, *, settled: bool) -> None:
-        """Show how far the drive has come; the plots only when there is something new for them."""
+    def show_drive(self, driven: Driven, time: float, *, settled: bool) -> None:
+        """Show how far the drive has come, or where in its past the user is, at `time`, s.
+
+        The plots follow only when there is something new for them.
+        """
         before, self._drive = self._drive, driven.state
         state = driven.state
         if before is None or before.past is not state.past:
             self._run = state.past
-            self._plot(state.time)
+            self._plot(time)
         self.scene.show_live(state.recent, state.road)
-        self.scene.draw(state.time)
+        self.scene.draw(time)
+        self._drawn = (self._run_number, time)
         if settled and (before is None or before.config != state.config):
             self._controls.show(state.config, touched=driven.wish.touched)
         if state.ended:
@@ -180,7 +184,7 @@ class Window:
     def show_status(self, under_way: tuple[int, float, float] | None) -> None:
         """Say which run is shown, or how far the next is (number, part done, seconds so far)."""
         if self._drive is not None:
-            self._controls.status.content = status_line("Drive", "changes act at once")
+            self._controls.status.content = status_line("Drive", drive_facts(self._drive))
         elif under_way is not None and (under_way[2] > BUSY_DELAY or self._run is None):
             number, part, seconds = under_way
             doing = FIRST_START if part == 0 and seconds > SLOW_START else f"computing… {100 * part:.0f} %"
@@ -197,8 +201,9 @@ class Window:
     # ── Time ──
 
     def draw(self, time: float) -> None:
-        """The 3-D view at a time, s."""
-        if self._drive is None and self._run is not None and self._drawn != (self._run_number, time):
+        """The 3-D view at a time, s. Of a drive that goes on, each instant is drawn as it comes."""
+        goes_on = self._drive is not None and not self._drive.stands
+        if not goes_on and self._run is not None and self._drawn != (self._run_number, time):
             self.scene.draw(time)
             self._drawn = (self._run_number, time)
 
@@ -208,8 +213,8 @@ class Window:
             self._player.show_drive(playback, self._drive)
         else:
             self._player.show(playback)
-            if self._drive is None:
-                self._plots.point_at(playback.time)
+        if self._drive is None or self._drive.stands:
+            self._plots.point_at(playback.time)
         self._plots.settle()
         self._show_wheel()
         self._view.show_load_scale(self.scene.load_top)
@@ -295,7 +300,9 @@ class Window:
 
     def _plot(self, time: float) -> None:
         assert self._run is not None
-        self._plots.show(self._run, self._baseline, time, driving=self._drive is not None)
+        drive = self._drive
+        road = drive.road if drive is not None and drive.stands else None
+        self._plots.show(self._run, self._baseline, time, driving=drive is not None, road=road)
 
     def _notify(self, kind: str, title: str, body: str, color: Any, stays: bool = False) -> None:
         """One notification of each kind: a newer one takes the older one's place."""
@@ -311,6 +318,13 @@ class Window:
         notice = self._notices.pop(kind, None)
         if notice is not None:
             notice.remove()
+
+
+def drive_facts(state: DriveState) -> str:
+    """What the status line says of a drive."""
+    if state.ended:
+        return "it came to an end; look back, or restart"
+    return "look back with ← or the slider" if state.stands else "changes act at once"
 
 
 def status_line(name: str, facts: str, trouble: str = "") -> str:

@@ -50,6 +50,7 @@ PURE = (
     "app.load_colours",
     "app.trust",
     "app.markup",
+    "app.driving",
 )  # no viser, so that they are tested without a browser
 
 
