@@ -18,7 +18,6 @@ from app.about import about_html
 from app.charts import Charts
 from app.colours import wheel_palette
 from app.load_map import load_map
-from app.markup import page
 from app.plot_page import marks_html, now_html, plot_page
 from app.plots import load_plots
 from app.ride_plots import ride_plots
@@ -163,5 +162,5 @@ class PlotPanel:
 
 
 def stretch_html(run: Trajectory) -> str:
-    """Which stretch of a drive a tab shows."""
-    return page(f"<p>The drive from {run.t[0]:.1f} s to {run.t[-1]:.1f} s.</p>")
+    """HTML that says which stretch of a drive a tab shows; what comes below does not move for it."""
+    return f'<div class="trackride-stretch">The drive from {run.t[0]:.1f} s to {run.t[-1]:.1f} s</div>'
