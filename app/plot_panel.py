@@ -163,4 +163,5 @@ class PlotPanel:
 
 def stretch_html(run: Trajectory) -> str:
     """HTML that says which stretch of a drive a tab shows; what comes below does not move for it."""
-    return f'<div class="trackride-stretch">The drive from {run.t[0]:.1f} s to {run.t[-1]:.1f} s</div>'
+    words = f"The drive from {run.t[0]:.1f} s to {run.t[-1]:.1f} s"
+    return f'<div class="trackride-stretch"><span>{words}</span></div>'

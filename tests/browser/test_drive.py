@@ -65,7 +65,7 @@ def test_the_drive_goes_on_follows_sliders_and_rests_in_the_background(explorer)
     end = explorer.value("Time")
     assert end > rested
     page.get_by_role("tab", name="Spectrum").click()
-    expect(page.get_by_text("The drive from").first).to_be_visible()
+    expect(page.get_by_text("The drive from").locator("visible=true")).to_have_count(1)
     explorer.press("Time", "Home")
     wait_until(explorer, lambda: explorer.value("Time") < end)
     page.get_by_role("tab", name="Loads").click()
