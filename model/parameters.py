@@ -319,7 +319,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         group=ROAD, source=OURS, roads=("random",), kind="choice", choices=tuple("ABCDEFGH"),
         description="Class of ISO 8608, from A, a very good road, over C, a poor one, to E to H, ground without a "
         "road; B, D, F, G lie between. Heights double from class to class."),
-    Parameter("road.seed", "Seed", "", "", 1, 0, 4294967295, 0, 1000, 1,
+    Parameter("road.seed", "Seed", "", "", 1, 0, 999999, 0, 1000, 1,
         group=ROAD, source=OURS, roads=("random",), kind="integer",
         description="Number of the random road: the same number gives the same road anywhere.",
         growth="It is another road of the same roughness."),

@@ -48,33 +48,22 @@ def read_csv(data: bytes) -> str:
     text = text.replace(",", "." if ";" in text or "\t" in text else " ").replace(";", " ")
     lines = text.split("\n")
     number = [k for k, line in enumerate(lines, 1) if line and not line.isspace()]
-    if number and not _is_number(lines[number[0] - 1].split()[0]):
-        del number[0]
+    if number and lines[number[0] - 1].lstrip()[0] not in "+-.0123456789":
+        del number[0]  # headings
     return points_text(*_checked([lines[k - 1] for k in number], lambda row: f"line {number[row]}"))
-
-
-def _is_number(word: str) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True
 
 
 def _checked(rows: list[str], name: Callable[[int], str]) -> tuple[np.ndarray, np.ndarray]:
     """x and y of rows of two numbers each; `name` says where a row, counted from 0, stands."""
     if not 2 <= len(rows) <= POINT_LIMIT:
         raise PointsError(f"{len(rows)} points; give 2 to {POINT_LIMIT}, two numbers each: x and y in m")
-    words = [row.split() for row in rows]
-    for k, row in enumerate(words):
-        if len(row) != 2:
-            raise PointsError(f"{name(k)}: {len(row)} numbers; give two, x and y in m")
     try:
-        table = np.array([float(word) for row in words for word in row])
+        table = np.loadtxt(rows, comments=None, ndmin=2)
     except ValueError:
-        k, word = next((k, word) for k, row in enumerate(words) for word in row if not _is_number(word))
-        raise PointsError(f"{name(k)}: {word[:40]!r} is no number; give x and y in m") from None
-    x, y = table[::2].copy(), table[1::2].copy()
+        table = np.empty((0, 0))
+    if table.shape != (len(rows), 2):
+        table = _one_by_one(rows, name)
+    x, y = table.T.copy()
 
     def refuse(bad: np.ndarray, message: str) -> None:
         if bad.any():
@@ -94,3 +83,18 @@ def _checked(rows: list[str], name: Callable[[int], str]) -> tuple[np.ndarray, n
     x.setflags(write=False)
     y.setflags(write=False)
     return x, y
+
+
+def _one_by_one(rows: list[str], name: Callable[[int], str]) -> np.ndarray:
+    """The table (K, 2) of rows among which some are wrong. Raises PointsError for the first of these."""
+    table = np.empty((len(rows), 2))
+    for k, row in enumerate(rows):
+        words = row.split()
+        if len(words) != 2:
+            raise PointsError(f"{name(k)}: {len(words)} numbers; give two, x and y in m")
+        for column, word in enumerate(words):
+            try:
+                table[k, column] = float(word)
+            except ValueError:
+                raise PointsError(f"{name(k)}: {word[:40]!r} is no number; give x and y in m") from None
+    return table

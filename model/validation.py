@@ -196,8 +196,9 @@ def _convert(parameter: Parameter, value: Any) -> Value:
                     return text
         case "points":
             if isinstance(value, str):
-                points(value)
-                return value
+                text = value if value.isprintable() else " ".join(value.split())
+                points(text)
+                return text
         case "parts":
             if isinstance(value, list | tuple) and len(value) <= PART_LIMIT:
                 return tuple(value)
