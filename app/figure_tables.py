@@ -147,6 +147,6 @@ def _valued(parameter: Parameter, value: Any) -> str:
     """A value with its unit, as people read it."""
     if isinstance(value, bool):
         return "yes" if value else "no"
-    if isinstance(value, str):
+    if parameter.kind == "choice":
         return choice_words(value)
     return f"{shown_text(parameter, value)} {parameter.shown_unit}".strip()

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 import viser
 
+from app.controls import shown_text
 from app.driving import DriveState
 from app.errands import Errands
 from app.export import (
@@ -24,9 +25,10 @@ from app.export import (
 )
 from app.exports_panel import PICTURE
 from app.history import run_name
-from app.imports import configuration, run_from
+from app.imports import configuration, profile_changes, run_from
 from app.runner import Wish
 from model.config import ConfigError, dump_config
+from model.parameters import PARAMETER
 from model.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -154,6 +156,10 @@ class Porter:
         else:
             self._office.ask("configuration", lambda desk: desk.use(config))
 
+    def take_profile(self, name: str, content: bytes) -> None:
+        """Make the road of an uploaded CSV file."""
+        self._begin(partial(self._measure, name, content))
+
     def take_run(self, name: str, content: bytes) -> None:
         """Make the baseline of an uploaded file."""
         self._begin(partial(self._unpack, name, content))
@@ -273,6 +279,19 @@ class Porter:
             return
         if stored is not None:
             self._office.ask("restore", lambda desk: desk.restore(stored))
+
+    def _measure(self, name: str, content: bytes) -> None:
+        run = self._office.shown
+        if run is None:
+            return
+        try:
+            changes = profile_changes(name, content, run.config)
+        except ConfigError as error:
+            faults = error
+            self._intend("faults", lambda: self._front.show_faults(f"{name[:60]} cannot be used", faults))
+            return
+        self._office.ask("profile", lambda desk: desk.change_road(lambda config: changes))
+        self._say("Another road", f"{name[:60]}: {shown_text(PARAMETER['road.points'], changes['road.points'])}.")
 
     def _unpack(self, name: str, content: bytes) -> None:
         try:

@@ -21,6 +21,7 @@ from app.desk import Desk
 from app.history import first_wish
 from app.playback import Playback
 from app.porter import Order, Porter
+from app.road_parts import with_part, without_last
 from app.runner import Driven, Failed, Finished, Outcome, Refused, Runner, Simulate, Wish
 from app.stage import Stage
 from app.window import Scene, Window
@@ -187,6 +188,15 @@ class Session:
 
     def upload_run(self, name: str, content: bytes) -> None:
         self._intend("upload", lambda: self._porter.take_run(name, content))
+
+    def upload_profile(self, name: str, content: bytes) -> None:
+        self._intend("profile", lambda: self._porter.take_profile(name, content))
+
+    def add_to_road(self, road_type: str) -> None:
+        self._intend("road", lambda: self._desk.change_road(lambda config: with_part(config, road_type)))
+
+    def take_from_road(self) -> None:
+        self._intend("road", lambda: self._desk.change_road(without_last))
 
     def edit_yaml(self) -> None:
         self._intend("yaml", self._edit_yaml)

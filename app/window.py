@@ -10,13 +10,15 @@ import viser
 
 from app.callbacks import by_user
 from app.colours import wheel_palette
-from app.controls import ControlPanel, Wishes, refusal
+from app.control_panel import ControlPanel
+from app.controls import Wishes, refusal
 from app.driving import DriveState
 from app.exports_panel import Exporter, ExportsPanel
 from app.keys import Keys, add_keys
 from app.playback import Playback
 from app.playback_panel import PlaybackPanel, Player
 from app.plot_panel import PlotPanel
+from app.road_view import RoadAhead
 from app.runner import Driven, Failed, Finished, Refused
 from app.runs_panel import Keeping, RunsPanel
 from app.screen import LEFT, Layout, Screen
@@ -88,6 +90,7 @@ class Window:
         self._drive: DriveState | None = None  # the last of the drive that is shown
         self._drawn: tuple[int, float] | None = None  # run and time that the 3-D view shows
         self._run_number = 0
+        self._road_ahead = RoadAhead()
         self._notices: dict[str, viser.NotificationHandle] = {}
         self._screen = Screen(client.camera.image_width, client.camera.image_height)
         layout = self._screen.first()
@@ -217,7 +220,19 @@ class Window:
             self._plots.point_at(playback.time)
         self._plots.settle()
         self._show_wheel()
+        self._show_road(playback.time)
         self._view.show_load_scale(self.scene.load_top)
+
+    def _show_road(self, time: float) -> None:
+        """The side view of the road about the vehicle at a time of the run, s, or where it is driven now."""
+        if self._drive is not None:
+            view = self._road_ahead.of_drive(self._drive.recent, self._drive.road, self._drive.time)
+        elif self._run is not None and len(self._run.t):
+            view = self._road_ahead.of_run(self._run, time)
+        else:
+            return
+        if self._controls.road_view.content != view:
+            self._controls.road_view.content = view
 
     # ── Looks ──
 
