@@ -5,9 +5,13 @@ from __future__ import annotations
 import html
 from collections.abc import Sequence
 
-from model.ride import AIR_TIME, LOAD_PEAK, LOAD_RMS, TRAVEL, Row
+from model.ride import AIR_TIME, LOAD_COEFFICIENT, LOAD_PEAK, LOAD_RMS, TRAVEL, Row
 
-PAIRS = ((LOAD_PEAK, AIR_TIME), (LOAD_RMS, TRAVEL))  # figures of each wheel side by side in one table
+PAIRS = (
+    (LOAD_PEAK, AIR_TIME),
+    (LOAD_RMS, TRAVEL),
+    (LOAD_COEFFICIENT,),
+)  # figures of each wheel side by side in one table
 NOTABLE = 0.5  # %: a smaller change is not coloured
 NONE = "–"
 

@@ -29,7 +29,7 @@ BEHIND, AHEAD = 25.0, 60.0  # m of road that are kept behind and laid ready ahea
 SPARE = 30.0  # m of the road ahead that are left when more is laid
 REBASE = 1000.0  # m: driven further than this, the origin moves along, so that no digits are lost
 OBSTACLE_EVERY = 20.0  # m between half-rounds, of which a drive without end would soon have passed one
-KEPT_FORCES = ("road_suspension", "imaginary_suspension")  # of the vehicle: what may change under way
+CHANGEABLE = ("road_suspension", "imaginary_suspension", "seat")  # of the vehicle: what may change under way
 SAME = 1e-7  # m: nodes as close as this are one
 CAPACITY = 4000  # samples between two calls of advance
 
@@ -120,7 +120,7 @@ class LiveDrive:
     def change(self, config: Config) -> bool:
         """Drive on with another configuration; False where that meant to start anew from rest."""
         old = self.config
-        parts = [name for name in type(old.vehicle).model_fields if name not in KEPT_FORCES]
+        parts = [name for name in type(old.vehicle).model_fields if name not in CHANGEABLE]
         same_bodies = all(getattr(old.vehicle, name) == getattr(config.vehicle, name) for name in parts)
         if not same_bodies or old.simulation != config.simulation or self.status is not Status.RUNNING:
             self._start(config)
