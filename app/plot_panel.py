@@ -77,6 +77,7 @@ class PlotPanel:
         self._shown_at = monotonic()
         self._behind = [self._show_comfort, self._show_spectrum, self._show_map, self._show_trust]
         self._plot()
+        self.spectrum.offer_modes(not driving)
         self.point_at(time)
 
     def settle(self) -> None:
@@ -104,7 +105,8 @@ class PlotPanel:
 
     def redraw_spectrum(self) -> None:
         """Show another spectrum, or the same in another way."""
-        self._behind = self._behind or [self._show_spectrum]
+        if self._show_spectrum not in self._behind:
+            self._behind.insert(0, self._show_spectrum)
 
     def set_dark(self, dark: bool) -> None:
         """Change all colours."""
@@ -133,7 +135,7 @@ class PlotPanel:
     def _show_spectrum(self, run: Trajectory) -> None:
         colour = wheel_palette(1, 0, self._dark).hull
         height = chart_height(self._page_height, 2)
-        self.spectrum.show(run, self._baseline, colour, height, driving=self._driving)
+        self.spectrum.show(run, self._baseline, colour, height)
 
     def _show_map(self, run: Trajectory) -> None:
         self._map.content = load_map(run, self._baseline)

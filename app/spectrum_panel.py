@@ -61,11 +61,8 @@ class SpectrumPanel:
             box.on_update(by_user(lambda event: analyst.redraw_spectrum(), analyst.fail))
         self._choice.on_update(by_user(lambda event: analyst.show_mode(), analyst.fail))
 
-    def show(self, run: Trajectory, baseline: Trajectory | None, colour: str, height: int, *, driving: bool) -> None:
-        """Show a run, beside its baseline, in a CSS colour and a chart of a height, px.
-
-        driving: the run is the latest stretch of an endless drive, during which no mode can be shown.
-        """
+    def show(self, run: Trajectory, baseline: Trajectory | None, colour: str, height: int) -> None:
+        """Show a run, beside its baseline, in a CSS colour and a chart of a height, px."""
         self._modes = None
         with suppress(NoEquilibriumError):
             self._modes = vehicle_modes(run.config)
@@ -84,7 +81,11 @@ class SpectrumPanel:
         titles = (NO_MODE, *mode_titles(self._modes))
         if self._choice.options != titles:
             self._choice.options = titles
-        self._choice.disabled = driving
+
+    def offer_modes(self, on: bool) -> None:
+        """Whether a mode can be chosen: during a drive there is no run whose place it could take."""
+        if self._choice.disabled is on:
+            self._choice.disabled = not on
 
     @property
     def chosen(self) -> Mode | None:
