@@ -36,9 +36,10 @@ class RoadAhead:
 
     def of_drive(self, recent: Trajectory, road: Road, time: float) -> str:
         """HTML of the view at a time of a drive, s, on the road that is laid."""
-        if self._road is not road:
+        if self._road is None or self._road.profile is not road.profile:
             x = float(recent.q[-1, recent.system.chassis, 0])
-            self._config, self._road, self._run, self._span = None, road, None, span_of(road, x, x)
+            self._config, self._run, self._span = None, None, span_of(road, x, x)
+        self._road = road
         return _at(recent, road, self._span, time)
 
 

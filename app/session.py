@@ -167,6 +167,16 @@ class Session:
     def pick_wheel(self, wheel: int | None) -> None:
         self._intend("wheel", lambda: self._window.pick_wheel(wheel))
 
+    def redraw_spectrum(self) -> None:
+        self._intend("spectrum", lambda: self._window.redraw_spectrum())
+
+    def show_mode(self) -> None:
+        """Show what the spectrum's tab says instead of the run, which stands still meanwhile."""
+        with self._lock:
+            if not self._driving:
+                self._playback.playing = False
+        self._intend("mode", lambda: self._window.show_mode())
+
     def set_switch(self, switch: str, on: bool | float) -> None:
         self._intend(switch, lambda: self._window.set_switch(switch, on))
 
@@ -303,7 +313,9 @@ class Session:
             intents, self._intents = self._intents, {}
             steps, self._steps = self._steps, 0
             driving = self._driving
-            if self._in_view and not driving:
+            if driving or not self._in_view:
+                elapsed = 0.0
+            if elapsed:
                 self._playback.advance(elapsed)
             playback = replace(self._playback)
             refused = self._refused if monotonic() >= self._refuse_at else None
@@ -315,7 +327,7 @@ class Session:
             self._desk.go(steps)
         if refused is not None and self._good is not None and self._runner.withdraw(refused.wish, self._good.wish):
             self._window.refuse(refused, self._good.trajectory.config)
-        self._window.draw(playback.time)
+        self._window.draw(playback.time, elapsed)
         if with_text:
             self._window.show_time(playback, driving)
             self._window.show_status(self._runner.under_way())

@@ -53,6 +53,13 @@ class Chassis(Section):
     cg_height: float = _field("vehicle.chassis.cg_height")
 
 
+class Seat(Section):
+    """The driver's, from the hull's centre of mass, in the hull's frame."""
+
+    x: float = _field("vehicle.seat.x")
+    y: float = _field("vehicle.seat.y")
+
+
 class RoadWheels(Section):
     """With `positions`, the other three are derived: number of wheels, mean spacing, middle."""
 
@@ -106,6 +113,7 @@ class ImaginarySuspension(Section):
 
 class Vehicle(Section):
     chassis: Chassis = Chassis()
+    seat: Seat = Seat()
     road_wheels: RoadWheels = RoadWheels()
     road_arms: RoadArms = RoadArms()
     road_suspension: RoadSuspension = RoadSuspension()

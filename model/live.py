@@ -28,7 +28,7 @@ SPARE = 30.0  # m of it ahead that are left when there is more to be seen
 LAID = 4.0  # m ahead of the first wheel's reach for which the road is laid at once
 STRIDE = 0.05  # s driven at most until it is looked at whether there is road enough
 REBASE = 1000.0  # m: driven further than this, the origin moves along, so that no digits are lost
-KEPT_FORCES = ("road_suspension", "imaginary_suspension")  # of the vehicle: what may change under way
+CHANGEABLE = ("road_suspension", "imaginary_suspension", "seat")  # of the vehicle: what may change under way
 CAPACITY = 4000  # samples between two calls of advance
 
 
@@ -80,7 +80,7 @@ class LiveDrive:
     def change(self, config: Config) -> bool:
         """Drive on with another configuration; False where that meant to start anew from rest."""
         old = self.config
-        parts = [name for name in type(old.vehicle).model_fields if name not in KEPT_FORCES]
+        parts = [name for name in type(old.vehicle).model_fields if name not in CHANGEABLE]
         same_bodies = all(getattr(old.vehicle, name) == getattr(config.vehicle, name) for name in parts)
         if not same_bodies or old.simulation != config.simulation or self.status is not Status.RUNNING:
             self._start(config)

@@ -9,9 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from model.comfort import Comfort, ride_comfort
 from model.config import SineRoad
 from model.equilibrium import NoEquilibriumError, rest_pose
 from model.road import Road, build_road
+from model.signals import seat, steady
 from model.trajectory import Trajectory, wheel_names
 from model.vehicle import System
 
@@ -28,6 +30,7 @@ class Summary:
     load_min: np.ndarray  # (W,) N
     load_mean: np.ndarray  # (W,) N
     load_max: np.ndarray  # (W,) N
+    load_coefficient: np.ndarray  # (W,) dynamic load coefficient, 0…; see there
     air_time: np.ndarray  # (W,) s without load
     travel_down: np.ndarray  # (n,) m, lowest wheel centre relative to the hull, from the static pose; ≤ 0
     travel_up: np.ndarray  # (n,) m, highest; ≥ 0
@@ -35,6 +38,7 @@ class Summary:
     acceleration_peak: float  # m/s², the largest in either direction
     pitch_low: float  # rad; the nose is up where it is positive
     pitch_high: float  # rad
+    seat: Comfort  # of the driver
     imaginary_share: float  # mean over time of Σ load of imaginary wheels / Σ load of all
     drift: float  # m, by which joints were apart at worst
     real_time_factor: float  # simulated time / computing time
@@ -50,14 +54,17 @@ class _Figure(NamedTuple):
 
 ACCELERATION_RMS = _Figure("Vertical acceleration, rms", "m/s²", 1e-3)
 ACCELERATION_PEAK = _Figure("Vertical acceleration, peak", "m/s²", 1e-3)
+WEIGHTED = _Figure("Weighted acceleration at the seat", "m/s²", 1e-3)
+POWER = _Figure("Absorbed power at the seat", "W", 1e-3)
 PITCH = _Figure("Pitch, peak to peak", "°", 1e-3)
 IMAGINARY_SHARE = _Figure("Load on imaginary wheels", "%", 1e-2)
 LOAD_PEAK = _Figure("Peak load", "kN", 1e-3)
 LOAD_RMS = _Figure("Load, rms", "kN", 1e-3)
+LOAD_COEFFICIENT = _Figure("Dynamic load coefficient", "%", 1e-2)
 TRAVEL = _Figure("Suspension travel", "mm", 1e-2)
 AIR_TIME = _Figure("Time in the air", "s", 1e-9)
-HULL_FIGURES = (ACCELERATION_RMS, ACCELERATION_PEAK, PITCH, IMAGINARY_SHARE)
-WHEEL_FIGURES = (LOAD_PEAK, LOAD_RMS, TRAVEL, AIR_TIME)
+HULL_FIGURES = (ACCELERATION_RMS, ACCELERATION_PEAK, WEIGHTED, POWER, PITCH, IMAGINARY_SHARE)
+WHEEL_FIGURES = (LOAD_PEAK, LOAD_RMS, LOAD_COEFFICIENT, TRAVEL, AIR_TIME)
 
 
 @dataclass(frozen=True)
@@ -124,6 +131,7 @@ def summary(trajectory: Trajectory) -> Summary:
         load_min=load.min(axis=0),
         load_mean=load.mean(axis=0),
         load_max=load.max(axis=0),
+        load_coefficient=dynamic_load_coefficient(trajectory),
         air_time=(load <= 0).sum(axis=0) / trajectory.config.simulation.output_rate,
         travel_down=travel.min(axis=0),
         travel_up=travel.max(axis=0),
@@ -131,6 +139,7 @@ def summary(trajectory: Trajectory) -> Summary:
         acceleration_peak=float(np.abs(acceleration).max()),
         pitch_low=float(pitch.min()),
         pitch_high=float(pitch.max()),
+        seat=ride_comfort(trajectory, seat(trajectory.config)),
         imaginary_share=imaginary_share(trajectory),
         drift=float(trajectory.constraint_residual.max()),
         real_time_factor=float(trajectory.t[-1]) / trajectory.statistics.seconds,
@@ -157,6 +166,15 @@ def imaginary_share(trajectory: Trajectory) -> float:
     imaginary = trajectory.normal_load[:, trajectory.system.n :].sum(axis=1)
     grounded = total > 0
     return float(np.mean(imaginary[grounded] / total[grounded])) if grounded.any() else 0.0
+
+
+def dynamic_load_coefficient(trajectory: Trajectory) -> np.ndarray:
+    """(W,) standard deviation of each wheel's load over the steady part of a run / its load at rest (Sweatman 1983).
+
+    0 where the load does not change; NaN for a wheel without load at rest.
+    """
+    static = np.where(trajectory.static_load > 0, trajectory.static_load, np.nan)
+    return trajectory.normal_load[steady(trajectory)].std(axis=0) / static
 
 
 def comparison(now: Trajectory, baseline: Trajectory | None) -> list[Row]:
@@ -191,16 +209,20 @@ def _figures(trajectory: Trajectory) -> dict[tuple[_Figure, str], float]:
     figures = {
         (ACCELERATION_RMS, ""): of.acceleration_rms,
         (ACCELERATION_PEAK, ""): of.acceleration_peak,
+        (WEIGHTED, ""): of.seat.total,
+        (POWER, ""): of.seat.absorbed_power,
         (PITCH, ""): float(np.degrees(of.pitch_high - of.pitch_low)),
         (IMAGINARY_SHARE, ""): 100 * of.imaginary_share,
     }
     for figure, names, values in (
         (LOAD_PEAK, of.names, of.load_max / 1e3),
         (LOAD_RMS, of.names, np.sqrt(np.mean(trajectory.normal_load**2, axis=0)) / 1e3),
+        (LOAD_COEFFICIENT, of.names, 100 * of.load_coefficient),
         (TRAVEL, of.names[:n], 1e3 * (of.travel_up - of.travel_down)),
         (AIR_TIME, of.names, of.air_time),
     ):
-        figures |= {(figure, name): float(value) for name, value in zip(names, values, strict=True)}
+        known = ((name, float(value)) for name, value in zip(names, values, strict=True) if np.isfinite(value))
+        figures |= {(figure, name): value for name, value in known}
     return figures
 
 

@@ -116,8 +116,8 @@ def unknown_fault(path: str, value: Any) -> Fault:
         return Fault(path, shorten(value), f"is a section; name one of its keys, such as {first}")
     known = [*PARAMETER, *SECTIONS]
     parent, _, leaf = path[:200].rpartition(".")
-    siblings = [key for key in known if key.rpartition(".")[0] == parent]
-    near = get_close_matches(path[:200], siblings, n=1)
+    siblings = {key.rpartition(".")[2]: key for key in known if key.rpartition(".")[0] == parent}
+    near = [siblings[name] for name in get_close_matches(leaf, siblings, n=1)]
     if not near:
         score = {key: SequenceMatcher(None, leaf, key.rpartition(".")[2]).ratio() for key in known}
         near = [max(known, key=lambda key: score[key])]
