@@ -154,7 +154,8 @@ class LiveDrive:
 
         Its times go on from the start, its x from the present origin.
         """
-        past = [part for part in self._past if part[0][-1] >= self.time - seconds] or [self._past[-1]]
+        since = self.time - seconds
+        past = [part for part in self._past if part[0][-1] >= since] or [self._past[-1]]
         t = np.concatenate([times for times, _ in past])
         samples = Samples._make(np.concatenate(parts) for parts in zip(*(kept for _, kept in past), strict=True))
         status, advice = "complete", ""

@@ -1,5 +1,7 @@
 """An hour of Drive at eight times real time, without a browser and without waiting: `python -m tests.benchmarks.drive`.
 
+For less than an hour give the minutes: `python -m tests.benchmarks.drive 10`.
+
 The clock is told that each frame took its time, so that an hour passes as fast as it can be computed. What a frame
 takes of the processor is measured: the drive falls behind where that is more than a frame lasts. A slider of the
 suspension is moved every minute, and one of the road at every frame for a second of each minute.
@@ -9,6 +11,7 @@ from __future__ import annotations
 
 import gc
 import resource
+import sys
 from pathlib import Path
 from time import thread_time
 
@@ -96,5 +99,6 @@ def memory() -> float:
 
 
 if __name__ == "__main__":
-    for what, (value, unit) in measure().items():
+    minutes = float(sys.argv[1]) if len(sys.argv) > 1 else HOUR / 60
+    for what, (value, unit) in measure(60 * minutes).items():
         print(f"{what:50} {value:10.4g} {unit}")

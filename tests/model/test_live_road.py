@@ -94,6 +94,8 @@ def test_a_road_with_an_end_comes_again_backwards_and_has_no_step_in_between():
     down = height(shapes, 5.0 + every + np.array([0.25, 0.5, 1.5]))
     np.testing.assert_allclose(down, [0.15, 0.1, 0.0], atol=1e-12)
     np.testing.assert_allclose(height(shapes, 5.0 + 2 * every + 0.25), 0.05, atol=1e-12)
+    _, slopes, _ = shapes.derivatives(np.array([5.5, 5.5 + every, 5.5 + 2 * every]))
+    np.testing.assert_allclose(slopes, [0.2, -0.2, 0.2], atol=1e-12)
     x = np.arange(0.0, 200.0, 0.001)
     assert np.abs(np.diff(height(shapes, x))).max() <= 0.00021
     corners = [piece.nodes[-1] for piece in shapes.laid(0.0, 60.0).pieces[:-1]]
