@@ -227,6 +227,8 @@ def _figure_table(trajectory: Trajectory, figures: Summary) -> Table:
     for what, value in (
         ("Vertical acceleration of the hull, rms", f"{figures.acceleration_rms:.4g} m/s²"),
         ("Vertical acceleration of the hull, peak", f"{figures.acceleration_peak:.4g} m/s²"),
+        ("Weighted acceleration at the seat", f"{figures.seat.total:.4g} m/s², {figures.seat.reaction}"),
+        ("Absorbed power at the seat", f"{figures.seat.absorbed_power:.3g} W"),
         ("Mean share of imaginary wheels in the load", f"{100 * figures.imaginary_share:.1f} %"),
         ("Constraint drift, largest", f"{1e6 * figures.drift:.3g} µm"),
         ("Steps (rejected)", f"{work.steps} ({work.rejected_steps})"),

@@ -16,7 +16,7 @@ from assets.hull import hull
 from assets.layout import Layout
 from assets.solids import Part, glb, joined, light
 from assets.surroundings import RoadStrip, ground, shadow_faces, sky
-from model.road import Road
+from model.road import Profile
 
 VEHICLE = "/vehicle"  # the node above all of the vehicle's
 GROUND_BELOW = 0.55  # m from the lowest point of the road down to the ground around it
@@ -157,7 +157,7 @@ class RoadNodes:
     def __init__(self, api: viser.SceneApi, layout: Layout) -> None:
         reach = (layout.front - layout.rear) / 2 + 1.8 * layout.scale
         self._strip = RoadStrip(reach, layout.road_half_width)
-        self._shown: tuple[Road, float, float] | None = None  # the road, where the strip stands, its foot
+        self._shown: tuple[Profile, float, float] | None = None  # of the road; where the strip stands, its foot
         self._meshes: list[np.ndarray] = []
         self._shift = 0.0
         self._tiles = [
@@ -173,7 +173,7 @@ class RoadNodes:
         """Show the road around the vehicle; nothing is sent while it looks the same."""
         start, foot = self._strip.start(now.x), scene.lowest - GROUND_BELOW
         shift = start - now.origin
-        road = scene.ground.road
+        road = scene.ground.road.profile
         if self._shown is None or self._shown[0] is not road or self._shown[1:] != (start, foot):
             self._shown = road, start, foot
             self._meshes = self._strip.vertices(start, scene.ground.height, foot)

@@ -74,11 +74,35 @@ def test_one_cursor_goes_through_all_plots_and_the_values_at_it_are_shown(page):
         assert [len(values) for values in page.evaluate(VALUES)] == ([6, 5, 1] if tab == "Loads" else [1, 1, 1, 6])
 
 
+def test_the_ride_is_told_in_a_line_and_in_tables(page):
+    show(page, "Ride")
+    expect(page.locator(".trackride-comfort:visible")).to_contain_text("uncomfortable")
+    tables = page.locator(".trackride-page:visible .trackride-figures")
+    expect(tables).to_have_count(2)
+    expect(tables.first).to_contain_text("Absorbed power, W")
+
+
+def test_a_mode_swings_in_the_3d_view_until_the_run_is_played(page):
+    explorer = Explorer(page)
+    show(page, "Spectrum")
+    choice = explorer.control("Show in 3-D")
+    choice.click()
+    page.get_by_role("option", name="Bounce").click()
+    expect(explorer.status).to_contain_text("shown at 1 Hz")
+    page.wait_for_function("() => '/ghost' in __viserMutable.nodePoseData")
+    explorer.button("Play").click()
+    expect(explorer.status).to_contain_text("real time")
+    page.wait_for_function("() => !('/ghost' in __viserMutable.nodePoseData)")
+    expect(choice).to_have_value("– the run –")
+    explorer.button("Pause").click()
+
+
 def test_the_other_tabs_show_spectrum_map_trust_and_equations(page):
     show(page, "Spectrum")
     names = page.locator(".trackride-frequency .trackride-marks i")
     expect(names).to_have_count(3)
     assert "Bounce" in names.first.get_attribute("data-name")
+    expect(page.locator(".trackride-modes:visible")).to_contain_text("hull up and down")
     show(page, "Load map")
     pictures = page.locator(".trackride-map img")
     expect(pictures).to_have_count(2)
