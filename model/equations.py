@@ -51,12 +51,26 @@ def suspension_torques(system: System, q: np.ndarray, v: np.ndarray) -> np.ndarr
     Q_theta = np.zeros(len(q))
     for s in range(len(system.spring_i)):
         i, j = system.spring_i[s], system.spring_j[s]
-        # Eq. (1), and eq. (2) with its sign turned: τ = k (θ_i − θ_j) + c (θ̇_i − θ̇_j) + τ_0
-        tau = system.k_s[s] * (q[i, 2] - q[j, 2]) + system.c_s[s] * (v[i, 2] - v[j, 2]) + system.tau_0[s]
+        # Eq. (1), and eq. (2) with its sign turned: τ = k (θ_i − θ_j) + c (θ̇_i − θ̇_j) + τ_0; beyond the paper, k
+        # stiffens by 1 + p (θ_i − θ_j)², and c differs by direction
+        u, u_dot = q[i, 2] - q[j, 2], v[i, 2] - v[j, 2]
+        c = system.c_s[s] if u_dot >= 0.0 else system.c_rebound[s]
+        tau = system.k_s[s] * u * (1.0 + system.p[s] * u**2) + c * u_dot + system.tau_0[s]
+        if s < system.n:
+            tau += stop_torque(system, u, u_dot)
         # Eq. (3): the arm between takes the difference of both torques
         Q_theta[j] += tau
         Q_theta[i] -= tau
     return Q_theta
+
+
+def stop_torque(system: System, u: float, u_dot: float) -> float:
+    """Of a road arm's bump and rebound stops at θ_i − θ_j = u, N m; not in the paper. A stop pushes, it never pulls."""
+    if u > system.bump:
+        return max(0.0, system.k_stop * (u - system.bump) + system.c_stop * u_dot)
+    if u < system.rebound:
+        return min(0.0, system.k_stop * (u - system.rebound) + system.c_stop * u_dot)
+    return 0.0
 
 
 def nearest_point(road: Road, centre: np.ndarray) -> np.ndarray:

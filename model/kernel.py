@@ -104,6 +104,19 @@ def cos_sin(angle):
 
 
 @inlined
+def _beyond_linear(system, i, u, u_dot):
+    """What a road arm's progressive spring, rebound damping and stops add to eq. (1)."""
+    tau = system.k_s[i] * system.p[i] * u * u * u
+    if u_dot < 0.0:
+        tau += (system.c_rebound[i] - system.c_s[i]) * u_dot
+    if u > system.bump:
+        tau += max(0.0, system.k_stop * (u - system.bump) + system.c_stop * u_dot)
+    elif u < system.rebound:
+        tau += min(0.0, system.k_stop * (u - system.rebound) + system.c_stop * u_dot)
+    return tau
+
+
+@inlined
 def _fold_arm(m, I, p_x, p_y, w_x, w_y, K_xx, K_xy, K_yy, b_x, b_y, F_y, tau):
     """An arm that carries (K, b = K γ + f) at w, seen from its pivot p (both from its centre of mass).
 
@@ -194,7 +207,10 @@ def rates(system, road, t, y, dy, work):
         tau_chassis = system.r * work.F[0]
     for i in range(n):
         arm = 1 + i
-        tau = system.k_s[i] * (theta[0] - theta[arm]) + system.c_s[i] * (omega[0] - omega[arm]) + system.tau_0[i]
+        u, u_dot = theta[0] - theta[arm], omega[0] - omega[arm]
+        tau = system.k_s[i] * u + system.c_s[i] * u_dot + system.tau_0[i]
+        if not system.linear:
+            tau += _beyond_linear(system, i, u, u_dot)
         work.tau[i] = tau
         tau_chassis -= tau
 
@@ -369,6 +385,15 @@ def multipliers(system, dy, work, lam):
         work.F[0] = -lam[-1]
 
 
+@inlined
+def _turned(angle, u):
+    """u turned by an angle; wheels, jointed at their centres (u = 0), may have turned far."""
+    if u[0] == 0.0 and u[1] == 0.0:
+        return 0.0, 0.0
+    cos, sin = cos_sin(angle)
+    return cos * u[0] - sin * u[1], sin * u[0] + cos * u[1]
+
+
 @compiled
 def constraint_residual(system, t, y):
     """max |C(q, t)|, m."""
@@ -376,11 +401,9 @@ def constraint_residual(system, t, y):
     worst = 0.0
     for joint in range(len(system.joint_i)):
         i, j = system.joint_i[joint], system.joint_j[joint]
-        u_i, u_j = system.u_i[joint], system.u_j[joint]
-        c_i, s_i = np.cos(y[2 * B + i]), np.sin(y[2 * B + i])
-        c_j, s_j = np.cos(y[2 * B + j]), np.sin(y[2 * B + j])
-        C_x = y[i] + c_i * u_i[0] - s_i * u_i[1] - y[j] - c_j * u_j[0] + s_j * u_j[1]
-        C_y = y[B + i] + s_i * u_i[0] + c_i * u_i[1] - y[B + j] - s_j * u_j[0] - c_j * u_j[1]
+        i_x, i_y = _turned(y[2 * B + i], system.u_i[joint])
+        j_x, j_y = _turned(y[2 * B + j], system.u_j[joint])
+        C_x, C_y = y[i] + i_x - y[j] - j_x, y[B + i] + i_y - y[B + j] - j_y
         worst = max(worst, abs(C_x), abs(C_y))
     if system.prescribed:
         worst = max(worst, abs(y[0] - system.x_0 - system.v_ref * t))
