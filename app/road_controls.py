@@ -11,11 +11,10 @@ from typing import Any
 import viser
 
 from app.callbacks import by_user
-from app.controls import Wishes, hint, shown_text
+from app.controls import Wishes, choice_words, hint, shown_text
 from app.road_parts import ADDED, parts_from, parts_text
 from model.parameters import Parameter
 
-WORDS = {"half_round": "Half round", "trapezoid": "Bank", "step": "Step", "random": "Rough"}
 EXTENT = "trackride-extent"
 
 
@@ -75,14 +74,13 @@ class PartsControl(RoadControl):
             hint=f"{hint(parameter)} Here a line for each: change its numbers, or delete it.",
         )
         self._text.on_update(by_user(lambda event: wishes.change(parameter.key, self._meant()), wishes.fail))
+        types = {choice_words(road_type).capitalize(): road_type for road_type in ADDED}
         adding = gui.add_button_group(
             "Add",
-            tuple(WORDS[road_type] for road_type in ADDED),
-            hint="Put something on this road, ahead of the vehicle and behind what is there: a half-round, a bank with "
-            "a level top, a step up, or roughness of class C",
+            tuple(types),
+            hint="Put an obstacle on this road, behind those that are there, or make it rougher",
         )
         self._taking = gui.add_button("Take the last one away", hint="The last of the parts above")
-        types = {word: road_type for road_type, word in WORDS.items()}
         adding.on_click(by_user(lambda event: wishes.add_to_road(types[event.target.value]), wishes.fail))
         self._taking.on_click(by_user(lambda event: wishes.take_from_road(), wishes.fail))
 

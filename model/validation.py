@@ -379,8 +379,8 @@ def _profile_ahead(text: str, start: float | None, wheel_radius: float, *layout:
 
 
 _LAYOUT = tuple(f"{WHEELS}.{key}" for key in ("positions", "count", "spacing", "offset"))
-_ARM = ("vehicle.road_arms.length", "vehicle.road_arms.angle_deg")
 _VEHICLE = (f"{WHEELS}.radius", *_LAYOUT)
+_ARM = ("vehicle.road_arms.length", "vehicle.road_arms.angle_deg")
 _ROUND = ("road.height", "road.radius")
 
 # The keys a rule needs, and the rule: their values -> what is wrong, or None. The first given gets the fault.

@@ -13,6 +13,7 @@ from model.config import ConfigError, ProfileRoad, dump_config, load_config, par
 from model.points import POINT_LIMIT, PointsError, points, points_text, read_csv
 from model.road import Road, build_road
 from model.shapes import measured
+from model.simulate import simulate
 from tests.model.nearest import assert_nearest, centres_near
 from tests.model.support import PAPER
 
@@ -175,6 +176,24 @@ def test_a_profile_must_begin_level():
     assert PAPER.replace(replace | {"road.start": 2.75}).road.start == 2.75
     with pytest.raises(ConfigError, match=r"road.start: the first wheel stands at 1.75 m"):
         PAPER.replace(replace | {"road.start": 1.0})
+
+
+def test_who_rolls_away_downhill_still_finds_the_road():
+    """Contact is laid as far as the speed asked for leads, and further when a run comes further."""
+    config = PAPER.replace(
+        {
+            "road.type": "profile",
+            "road.points": "5 0, 15 -1, 300 -60, 400 -70",
+            "drive.force_limit": 0,
+            "drive.speed_kmh": 5,
+            "simulation.duration": 22,
+        }
+    )
+    run, road = simulate(config), build_road(config)
+    wheels = run.q[-1, run.system.road_wheels, :2]
+    assert run.complete
+    assert wheels[:, 0].min() > road.reach + 20
+    assert np.abs(wheels[:, 1] - road.height(wheels[:, 0])).max() < 0.5
 
 
 @pytest.mark.parametrize("seed", range(4))
