@@ -91,7 +91,7 @@ def _table(place: str, now: Comfort, baseline: Comfort | None, same_length: bool
     words = [now.reaction] if baseline is None else [now.reaction, baseline.reaction, ""]
     said = "".join(f'<td class="words">{word}</td>' for word in words)
     lines.append(f"<tr><td>In words</td>{said}</tr>")
-    return f'<table class="trackride-figures">{"".join(lines)}</table>'
+    return f'<table class="trackride-figures felt">{"".join(lines)}</table>'
 
 
 def _row(figure: Figure, now: Comfort, baseline: Comfort | None, same_length: bool) -> Row:

@@ -32,11 +32,12 @@ if (!window.trackridePlots) {
     met.add(chart);
     chart.root.classList.add(chart.cursor.sync.key);
     const shared = groupOf(chart), all = () => [chart.data[0][0], chart.data[0].at(-1)];
-    const [from, to] = shared.zoom, [first, last] = all();
-    if (to - from < 1) chart.setScale('x', {min: first + from * (last - first), max: first + to * (last - first)});
+    const [from, to] = shared.zoom, [first, last] = all();  // also of all the data: viser makes some charts with 0…1
+    chart.setScale('x', {min: first + from * (last - first), max: first + to * (last - first)});
     (chart.hooks.draw ??= []).push(() => {
       const [first, last] = all(), {min, max} = chart.scales.x;
-      if (last > first && seen(chart)) shared.zoom = [(min - first) / (last - first), (max - first) / (last - first)];
+      const drawn = last > first && max > min && seen(chart);
+      if (drawn) shared.zoom = [(min - first) / (last - first), (max - first) / (last - first)];
       point(chart);
       requestAnimationFrame(() => read(chart));
     });

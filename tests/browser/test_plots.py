@@ -77,7 +77,7 @@ def test_one_cursor_goes_through_all_plots_and_the_values_at_it_are_shown(page):
 def test_the_ride_is_told_in_a_line_and_in_tables(page):
     show(page, "Ride")
     expect(page.locator(".trackride-comfort:visible")).to_contain_text("uncomfortable")
-    tables = page.locator(".trackride-page:visible .trackride-figures")
+    tables = page.locator(".trackride-page:visible .felt")
     expect(tables).to_have_count(2)
     expect(tables.first).to_contain_text("Absorbed power, W")
 
