@@ -15,7 +15,7 @@ DASH = {"baseline": (4, 3), "static": (1, 3)}
 KEY = {"static": "dotted: at rest", "baseline": "dashed: baseline"}
 TICKS: viser.uplot.Axis_Ticks = {"size": 4, "width": 1}
 NUDGE = 1e-9  # s. A chart misses a new size that comes with new data, and works out its axes when the range changes.
-PADDING = (14, 18, 0, 0)  # px; less on top would cut the highest tick's label
+PADDING = (12, 18, 0, 0)  # px; less on top would cut the highest tick's label
 TIME_KEY, OTHER_KEY = "trackride-time", "trackride-frequency"  # charts with the same key share cursor and zoom
 
 
@@ -60,7 +60,7 @@ class Charts:
         low, high = ({"soft": bound, "mode": 1} for bound in plot.least) if plot.least else ({}, {})
         axis: viser.uplot.Axis = {"font": FONT, "ticks": TICKS, "grid": {"width": 1}}
         named: viser.uplot.Axis = {"labelFont": FONT, "labelSize": 16, "labelGap": 0}
-        along, upright = axis | {"size": 24}, axis | named | {"size": 40, "space": 20, "label": plot.unit}
+        along, upright = axis | {"size": 24}, axis | named | {"size": 40, "space": 24, "label": plot.unit}
         kinds = {curve.kind for curve in plot.curves}
         key = [words for kind, words in KEY.items() if kind in kinds]
         return self._gui.add_uplot(

@@ -34,6 +34,7 @@ SWITCHES = {  # attribute of the stage -> label, whether it is on at first, hint
         "A bar beside each road wheel: how far it moves in the hull; long mark: at rest",
     ),
     "show_labels": ("Wheel names", True, "R1… road wheels, I1… imaginary wheels, front first"),
+    "show_loads": ("Loads in figures", False, "Normal load f_n, kN, under each wheel's name"),
     "show_scale_bar": ("Scale bar", True, "One metre, under the rear of the vehicle"),
     "show_grid": ("Grid", False, "Half metres and metres on a wall behind the vehicle; heights from level ground"),
 }

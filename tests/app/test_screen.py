@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.screen import LEFT, RIGHT, SEAMS, WIDEST, Screen, chart_height
+from app.screen import CARD, LEFT, PLOTS_HEAD, RIGHT, SEAMS, WIDEST, Screen, chart_height
 
 
 @pytest.mark.parametrize("scale", [0.5, 1.0, 1.25, 1.5, 2.0])
@@ -39,11 +39,12 @@ def test_a_taller_page_makes_taller_charts_but_coarser_drawing_does_not() -> Non
     assert chart_height(1200, 3) > chart_height(900, 3)
 
 
-@pytest.mark.parametrize(("height", "plots"), [(720, 3), (900, 3), (1000, 2), (1200, 3)])
-def test_charts_fit_below_each_other(height: int, plots: int) -> None:
-    assert plots * chart_height(height, plots) < height
+@pytest.mark.parametrize(("height", "plots"), [(720, 3), (720, 4), (900, 4), (1000, 2), (1440, 4)])
+def test_charts_fill_the_page_below_each_other(height: int, plots: int) -> None:
+    taken = PLOTS_HEAD + plots * (chart_height(height, plots) + CARD)
+    assert 0 <= height - taken < plots or chart_height(height, plots) == 460
 
 
 def test_charts_stay_usable_on_any_page() -> None:
-    assert chart_height(300, 3) == 130
+    assert chart_height(300, 3) == 110
     assert chart_height(5000, 2) == 460
