@@ -40,7 +40,7 @@ PAGE = """<img hidden src="data:," onerror="
       const box = document.getElementById(document.getElementById('trackride-style')?.dataset.inView);
       if (box && box.checked === document.hidden) box.click();
     });
-  }">
+  }"><p class="trackride-intro">Move a slider: the run is computed anew. Ctrl+K: all keys.</p>
 <style id="trackride-style" data-in-view="IN_VIEW">
   [data-trackride="page"] + div { display: none; }
   [data-trackride="panel"] { padding-right: 4px; }
@@ -49,6 +49,8 @@ PAGE = """<img hidden src="data:," onerror="
   [data-trackride="panel"] div[style*="flex-shrink: 0"] > p { letter-spacing: -0.3px !important;
     font-size: 0.8em !important; }
   [data-trackride="panel"] > .mantine-Paper-root { margin-bottom: 1.15em !important; }
+  .trackride-intro { margin: -0.35em 0 0.6em; padding: 0 0.95em; font-size: 0.78em;
+    color: var(--mantine-color-dimmed); }
   .trackride-status { font-size: 0.8em; line-height: 1.5; padding: 0 0.8em 0.5em; white-space: nowrap;
     overflow: hidden; text-overflow: ellipsis; color: var(--mantine-color-dimmed); }
   .trackride-status b { font-weight: 550; color: var(--mantine-color-text); }

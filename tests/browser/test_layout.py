@@ -1,0 +1,52 @@
+"""Nothing jumps: while a slider is dragged, all boxes of the page stay where they are."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+WATCH = """() => {
+  const what = '.mantine-Slider-root, .trackride-status, button, label, .uplot-container, .u-over, .u-legend .u-series,'
+    + ' .trackride-page, canvas';
+  window.boxes = new Set();
+  const look = () => {
+    const seen = [...document.querySelectorAll(what)].filter(element => element.offsetWidth);
+    window.boxes.add(JSON.stringify(seen.map(element => {
+      const box = element.getBoundingClientRect();
+      return [element.className || element.tagName, ...[box.x, box.y, box.width, box.height].map(Math.round)].join(' ');
+    })));
+    window.watch = requestAnimationFrame(look);
+  };
+  look();
+}"""
+SEEN = "() => { cancelAnimationFrame(window.watch); return [...window.boxes].map(JSON.parse) }"
+
+
+@pytest.mark.parametrize("tab", ["Loads", "Ride"])
+def test_no_box_moves_while_a_slider_is_dragged(open_tab, tab):
+    explorer = open_tab(1280, 720)
+    page = explorer.page
+    page.get_by_role("tab", name=tab, exact=True).click()
+    explorer.button("Pause").click()
+    page.get_by_role("button", name="▶ Play").wait_for()
+    explorer.press("Time", "Home")
+    page.wait_for_function("() => document.querySelectorAll('.u-legend .u-value').length > 5")
+    page.wait_for_timeout(1500)
+    before = explorer.run_number()
+    box = explorer.thumb("Amplitude").bounding_box()
+    assert box is not None
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.wait_for_timeout(500)
+    page.evaluate(WATCH)
+    page.mouse.down()
+    for step in range(1, 11):
+        page.mouse.move(x + 5 * step, y)
+        page.wait_for_timeout(100)
+    page.mouse.up()
+    explorer.wait_for_run(after=before)
+    page.wait_for_timeout(500)
+    seen = page.evaluate(SEEN)
+    moved = [(old, new) for old, new in zip(seen[0], seen[-1], strict=False) if old != new]
+    assert len(seen) == 1, f"{len(seen)} arrangements were seen: {json.dumps(moved[:10])}"
