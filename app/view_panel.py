@@ -55,8 +55,8 @@ SWITCHES = {  # attribute of the stage -> label, whether it is on at first, hint
     ),
 }
 LOOK = (
-    "Side, front corner, ahead, or close to the front wheels (keys 1, 2, 3, 4). In the view itself drag to turn, with the "
-    "right button to shift; the mouse's wheel zooms."
+    "Side, front corner, ahead, or close to the front wheels (keys 1, 2, 3, 4). In the view itself drag to turn, with "
+    "the right button to shift; the mouse's wheel zooms."
 )
 ARROW_SCALE = 0.25, 4.0, 0.25  # least, most, step
 
@@ -86,10 +86,10 @@ class ViewPanel:
                 "Arrow length",
                 *ARROW_SCALE,
                 initial_value=1.0,
-                hint="Of all force arrows; at 1 an even share of the weight is as high as a road wheel, at 2 twice as high",
+                hint="Of all force arrows; at 1 an even share of the weight is as high as a road wheel, at 2 as two",
             )
-            self._load_scale = gui.add_html("", visible=False)
             night = gui.add_checkbox("Dark", dark, hint="Dark colours for page, plots and view")
+            self._load_scale = gui.add_html("", visible=False)
         views.on_click(by_user(lambda event: viewer.set_view(VIEWS[event.target.value]), viewer.fail))
         for attribute, box in self._switches.items():
             box.on_update(by_user(_switching(viewer, attribute), viewer.fail))
