@@ -23,15 +23,14 @@ class WheelLabels:
         self._frame = Frame(api, name)
         self._scale, self._y = layout.scale, -layout.arrow
         between = (np.array(layout.wheel_x)[: len(layout.links)] - layout.links).tolist()
-        self._rows = [
-            [(api.add_label(f"{name}/{letter}{k}", f"{letter}{k}", anchor="center-center"), x, f"{letter}{k}")
-             for k, x in enumerate(xs, start=1)]
-            for letter, xs in (("R", layout.wheel_x), ("I", between))
-        ]  # fmt: skip
+        families = ("R", layout.wheel_x), ("I", between)
+        self._names = [f"{letter}{k + 1}" for letter, xs in families for k in range(len(xs))]
+        self._places = [(x, row) for row, (_, xs) in enumerate(families) for x in xs]  # along the vehicle, and the row
+        self._labels = [api.add_label(f"{name}/{text}", text, anchor="center-center") for text in self._names]
+        self._texts = self._names
         ahead = (layout.front + UNIT_AHEAD * self._scale, self._y, -WITH_LOADS[0] * self._scale)
-        self._unit = api.add_label(f"{name}/unit", "kN", position=ahead, anchor="center-center")
+        self._unit = api.add_label(f"{name}/unit", "kN", position=ahead, anchor="center-center", visible=False)
         self._with_loads = False
-        self._texts: list[str] = []
         self._arrange()
 
     def show(self, names: bool, loads: bool) -> None:
@@ -42,15 +41,9 @@ class WheelLabels:
             self._arrange()
 
     def write(self, load: np.ndarray) -> None:
-        """Say these loads (W,), N, in the model's order; nothing is sent while they read the same."""
-        labels = [label for row in self._rows for label in row]
-        texts = [f"{name}\n{load_text(own)}" for (_, _, name), own in zip(labels, load, strict=True)]
-        if not self._with_loads or texts == self._texts:
-            return
-        for (node, _, _), text, before in zip(labels, texts, self._texts or [""] * len(texts), strict=True):
-            if text != before:
-                update(node, text=text)
-        self._texts = texts
+        """Say these loads (W,), N, in the model's order, if loads are shown."""
+        if self._with_loads:
+            self._say([f"{name}\n{load_text(own)}" for name, own in zip(self._names, load, strict=True)])
 
     def move(self, x: float, lowest: float) -> None:
         """Stand under the vehicle at x in the view, m, on a road with this lowest point."""
@@ -58,12 +51,18 @@ class WheelLabels:
 
     def _arrange(self) -> None:
         self._unit.visible = self._with_loads
-        self._texts = []
-        for row, below in zip(self._rows, WITH_LOADS if self._with_loads else NAMES, strict=True):
-            for node, x, name in row:
-                node.position = (x, self._y, -below * self._scale)
-                if not self._with_loads:
-                    update(node, text=name)
+        rows = WITH_LOADS if self._with_loads else NAMES
+        for label, (x, row) in zip(self._labels, self._places, strict=True):
+            label.position = (x, self._y, -rows[row] * self._scale)
+        if not self._with_loads:
+            self._say(self._names)
+
+    def _say(self, texts: list[str]) -> None:
+        """Nothing is sent where a label reads so already."""
+        for label, text, before in zip(self._labels, texts, self._texts, strict=True):
+            if text != before:
+                update(label, text=text)
+        self._texts = texts
 
 
 def load_text(load: float) -> str:

@@ -7,7 +7,7 @@ import pytest
 
 from app import playback_panel, wheel_card
 from app.camera import Standpoint, View, standpoint
-from app.screen import CARD, LEFT, PLOTS_HEAD, RIGHT, SEAMS, WIDEST, Screen, chart_height
+from app.screen import AXIS_NAME, CARD, LEFT, PLOTS_HEAD, RIGHT, SEAMS, WIDEST, Screen, chart_height
 from assets.hull import hull_edges
 from assets.layout import layout_of
 from model import load_config
@@ -48,7 +48,7 @@ def test_a_taller_page_makes_taller_charts_but_coarser_drawing_does_not() -> Non
 
 @pytest.mark.parametrize(("height", "plots"), [(720, 3), (720, 4), (900, 4), (1000, 2), (1440, 4)])
 def test_charts_fill_the_page_below_each_other(height: int, plots: int) -> None:
-    taken = PLOTS_HEAD + plots * (chart_height(height, plots) + CARD)
+    taken = PLOTS_HEAD + AXIS_NAME + plots * (chart_height(height, plots) + CARD)
     assert 0 <= height - taken < plots or chart_height(height, plots) == 460
 
 

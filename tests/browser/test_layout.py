@@ -1,10 +1,13 @@
-"""Nothing jumps: while a slider is dragged, all boxes of the page stay where they are."""
+"""Nothing jumps while a slider is dragged, and labels and buttons say what they are."""
 
 from __future__ import annotations
 
 import json
 
 import pytest
+from playwright.sync_api import expect
+
+from tests.browser.driver import SOON
 
 WATCH = """() => {
   const what = '.mantine-Slider-root, .trackride-status, button, label, .uplot-container, .u-over, .u-legend .u-series,'
@@ -50,3 +53,15 @@ def test_no_box_moves_while_a_slider_is_dragged(open_tab, tab):
     seen = page.evaluate(SEEN)
     moved = [(old, new) for old, new in zip(seen[0], seen[-1], strict=False) if old != new]
     assert len(seen) == 1, f"{len(seen)} arrangements were seen: {json.dumps(moved[:10])}"
+
+
+def test_a_hint_comes_over_the_label_and_goes_again(explorer):
+    page = explorer.page
+    hint = page.get_by_role("tooltip").filter(has_text="presses an imaginary wheel to the ground")
+    page.get_by_text("Imaginary stiffness").first.hover()
+    expect(hint).to_be_visible(timeout=SOON)
+    page.mouse.move(640, 60)
+    expect(hint).to_have_count(0, timeout=SOON)
+    page.get_by_text("Export", exact=True).click()
+    explorer.button("Screenshot").hover()
+    expect(explorer.button("Screenshot")).to_have_attribute("title", "The 3-D view as a PNG file (S)", timeout=SOON)
