@@ -50,6 +50,8 @@ if (!window.trackridePlots) {
   const meet = (chart) => {
     met.add(chart);
     chart.root.classList.add(chart.cursor.sync.key);
+    chart.root.querySelector('.u-title').title = 'Drag across the plot to zoom in, double-click to see all';
+    chart.root.querySelector('.u-legend').title = 'Click a name to hide its curve, with Ctrl to hide all others';
     hide(chart);
     (chart.hooks.setSeries ??= []).push((_, k, change) => {
       if (k === null || change.show === undefined || chart.series[k].class !== 'run') return;
