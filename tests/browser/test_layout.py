@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 
 import pytest
 from playwright.sync_api import expect
 
-from tests.browser.driver import SOON
+from tests.browser.driver import SOON, Explorer
 
 WATCH = """() => {
   const what = '.mantine-Slider-root, .trackride-status, button, label, .uplot-container, .u-over, .u-legend .u-series,'
@@ -26,14 +27,21 @@ WATCH = """() => {
 SEEN = "() => { cancelAnimationFrame(window.watch); return [...window.boxes].map(JSON.parse) }"
 
 
+@pytest.fixture(scope="module")
+def explorer(browser, address) -> Iterator[Explorer]:
+    context = browser.new_context(viewport={"width": 1280, "height": 720})
+    explorer = Explorer(context.new_page()).open(f"{address}/?fixedDpr=0.5")
+    explorer.button("Pause").click()
+    explorer.page.get_by_role("button", name="▶ Play").wait_for()
+    explorer.press("Time", "Home")
+    yield explorer
+    context.close()
+
+
 @pytest.mark.parametrize("tab", ["Loads", "Ride"])
-def test_no_box_moves_while_a_slider_is_dragged(open_tab, tab):
-    explorer = open_tab(1280, 720)
+def test_no_box_moves_while_a_slider_is_dragged(explorer, tab):
     page = explorer.page
     page.get_by_role("tab", name=tab, exact=True).click()
-    explorer.button("Pause").click()
-    page.get_by_role("button", name="▶ Play").wait_for()
-    explorer.press("Time", "Home")
     page.wait_for_function("() => document.querySelectorAll('.u-legend .u-value').length > 5")
     page.wait_for_timeout(1500)
     before = explorer.run_number()
