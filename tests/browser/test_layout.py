@@ -33,7 +33,7 @@ def explorer(browser, address) -> Iterator[Explorer]:
     explorer = Explorer(context.new_page()).open(f"{address}/?fixedDpr=0.5")
     explorer.button("Pause").click()
     explorer.page.get_by_role("button", name="▶ Play").wait_for()
-    explorer.press("Time", "Home")
+    explorer.press("Time", "End")  # where the values beside the names change
     yield explorer
     context.close()
 
