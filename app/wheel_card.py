@@ -85,7 +85,10 @@ def _percent(share: float | None) -> float | None:
 
 
 def _figure(value: float | None, digits: int, unit: str) -> str:
-    return ABSENT if value is None else f"{value:.{digits}f}{'' if unit == '°' else ' '}{unit}".replace("-", "−")
+    if value is None:
+        return ABSENT
+    number = round(value, digits) + 0.0  # no minus before zero
+    return f"{number:.{digits}f}{'' if unit == '°' else ' '}{unit}".replace("-", "−")
 
 
 STYLE = """<style>

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -152,8 +153,10 @@ def test_the_road_of_a_drive_is_laid_once_for_many_instants(tab: Tab) -> None:
 
 def test_a_wheel_s_card_says_when_it_is_in_the_air(scene: Scene) -> None:
     time, wheel = flight(scene)
-    text = card(wheel_state(scene.trajectory, wheel, time), "#123456")
+    state = wheel_state(scene.trajectory, wheel, time)
+    text = card(state, "#123456")
     assert all(part in text for part in ("in the air", "0.00 kN", "#123456", "–"))
+    assert "<b>0.000 m/s</b>" in card(replace(state, slip_velocity=-1e-5), "#123456")
     rolling = card(wheel_state(scene.trajectory, 2, 0.0), "#123456")
     assert "R3" in rolling
     assert "in the air" not in rolling
