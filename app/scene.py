@@ -193,6 +193,10 @@ class Scene:
         """q (B, 3) of all bodies at a time, s."""
         return self._between(time)[0]
 
+    def loads(self, time: float) -> np.ndarray:
+        """Normal loads (W,), N, at a time, s."""
+        return self._between(time)[1]
+
     def _between(self, time: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """q (B, 3), normal loads (W,) and tractions (W,) at a time."""
         run = self.trajectory

@@ -25,7 +25,7 @@ from app.runner import Driven, Failed, Finished, Refused
 from app.runs_panel import Keeping, RunsPanel
 from app.screen import LEFT, Layout, Screen
 from app.spectrum_panel import Analyst
-from app.style import add_page, apply_theme
+from app.style import add_hints, add_page, apply_theme
 from app.view_panel import Viewer, ViewPanel
 from app.wheel_card import Picker, WheelCard
 from model.config import Config, ConfigError
@@ -59,6 +59,8 @@ class Scene(Protocol):
     def on_pick(self, act: Callable[[int], None]) -> None: ...
 
     def wheel_state(self, wheel: int) -> WheelState | None: ...
+
+    def write_loads(self) -> None: ...
 
     @property
     def load_top(self) -> float | None: ...
@@ -115,9 +117,10 @@ class Window:
             self.runs = RunsPanel(gui, self._plots.runs_tab, actions)
             self._plots_panel.dock_right()
             self._player = PlaybackPanel(gui, actions)
+            self._card = WheelCard(gui, actions)
             self._resize(layout)
             add_keys(gui, actions)
-            self._card = WheelCard(gui, actions)
+            add_hints(gui)
         self.scene = make_scene(client, dark)
         self.scene.on_pick(actions.pick_wheel)
 
@@ -268,6 +271,7 @@ class Window:
         if self._drive is None or self._drive.stands:
             self._plots.point_at(playback.time)
         self._plots.settle()
+        self.scene.write_loads()
         self._show_wheel()
         self._show_road(playback.time)
         self._view.show_load_scale(self.scene.load_top)
@@ -361,6 +365,7 @@ class Window:
         self._plots_panel.set_width(layout.right)
         self._plots.set_page_height(layout.page_height)
         self._player.place(layout.player_x, layout.player_width)
+        self._card.place(layout.player_x, layout.player_width)
 
     def _plot(self, time: float) -> None:
         assert self._run is not None
