@@ -47,8 +47,9 @@ class Tables:
         against = "the baseline" if compared else "the paper's vehicle"
         self._head("Parameters", f"changed against {against}: first, marked" if changed else f"as in {against}")
         for key in changed:
-            self._changed_row(PARAMETER[key], values[key], before.get(key))
-        self._other_rows([(PARAMETER[key], values[key]) for key in same])
+            was = _valued(reference.parameter(key), before[key]) if key in before else ""
+            self._changed_row(config.parameter(key), values[key], was)
+        self._other_rows([(config.parameter(key), values[key]) for key in same])
 
     def _head(self, title: str, remark: str = "") -> None:
         self._page.write(self._x, self._y, title, HEAD, weight="bold")
@@ -110,12 +111,12 @@ class Tables:
 
     # ── Parameters ──
 
-    def _changed_row(self, parameter: Parameter, value: Any, before: Any) -> None:
+    def _changed_row(self, parameter: Parameter, value: Any, was: str) -> None:
         self._next(MARKED)
         self._cell(self._x + 0.02, _named(parameter), weight="bold")
         self._cell(self._x + 1.85, plain(_valued(parameter, value), 32), weight="bold")
-        if before is not None:
-            self._cell(self._x + self._width - 0.02, plain(f"was {_valued(parameter, before)}", 26), ha="right")
+        if was:
+            self._cell(self._x + self._width - 0.02, plain(f"was {was}", 26), ha="right")
 
     def _other_rows(self, parameters: list[tuple[Parameter, Any]]) -> None:
         """In two columns."""

@@ -24,15 +24,16 @@ from app.export import (
 from app.exports_panel import PICTURE
 from app.history import run_name
 from app.imports import configuration, run_from
-from app.runner import Wish
-from model.config import ConfigError, dump_config
+from app.memory import State, state_from
+from app.runner import Simulate, Wish
+from model.config import Config, ConfigError, dump_config
 from model.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from app.desk import Desk
 
 STORED = "trackride"  # key in the browser's storage
-STORAGE_PATIENCE = 10.0  # s in which a browser says what it has stored
+STORAGE_PATIENCE = 60.0  # s in which a browser says what it has stored; afterwards that is overwritten
 
 log = logging.getLogger("trackride")
 
@@ -82,7 +83,7 @@ class Order:
 
     def name(self, detail: str, suffix: str) -> str:
         """Of a file."""
-        return file_name(self.wish.base.name, self.wish.changes, detail, suffix)
+        return file_name(self.run.config, self.wish.base.name, self.wish.changes, detail, suffix)
 
     @property
     def title(self) -> str:
@@ -103,10 +104,12 @@ class Porter:
         client: viser.ClientHandle,
         office: Office,
         front: Front,
+        simulate: Simulate,
         intend: Callable[[str, Callable[[], None]], None],
     ) -> None:
         """intend: has the thread that draws do something, the newest of each kind."""
         self._client, self._office, self._front, self._intend = client, office, front, intend
+        self._simulate = simulate
         self._errands, self._memory = Errands(office.fail), Errands(office.fail)
         self._makers: dict[str, tuple[str, Callable[[Order], tuple[str, bytes]]]] = {
             PICTURE: ("", self._picture),
@@ -153,6 +156,10 @@ class Porter:
     def recollect(self) -> None:
         """Go on where this browser was at its last visit, as soon as it says where."""
         self._memory.start(self._ask_browser)
+
+    def run_again(self, config: Config) -> None:
+        """Make a run for the desk of which only the configuration is left, unless one is being made."""
+        self._memory.start(partial(self._run_again, config))
 
     def _begin(self, job: Callable[[], None]) -> None:
         if not self._errands.start(job):
@@ -241,13 +248,21 @@ class Porter:
     # ── In: on the errands' thread ──
 
     def _ask_browser(self) -> None:
+        state: State | None = None
         try:
             stored = self._client.local_storage.get_item(STORED, timeout=STORAGE_PATIENCE)
-        except (TimeoutError, RuntimeError) as error:
+            state = None if stored is None else state_from(stored)
+        except (TimeoutError, RuntimeError, ValueError) as error:
             log.info("nothing from the browser's storage: %s", error)
-            return
-        if stored is not None:
-            self._office.ask("restore", lambda desk: desk.restore(stored))
+        self._office.ask("restore", lambda desk: desk.restore(state))
+
+    def _run_again(self, config: Config) -> None:
+        run: Trajectory | None = None
+        try:
+            run = self._simulate(config, on_progress=lambda part: None, should_stop=self._memory.stopped)
+        finally:
+            if not self._memory.stopped():
+                self._office.ask("again", lambda desk: desk.made_again(config, run))
 
     def _unpack(self, name: str, content: bytes) -> None:
         try:
