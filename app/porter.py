@@ -26,8 +26,9 @@ from app.export import (
 from app.exports_panel import PICTURE
 from app.history import run_name
 from app.imports import configuration, profile_changes, run_from
-from app.runner import Wish
-from model.config import ConfigError, dump_config
+from app.memory import State, state_from
+from app.runner import Simulate, Wish
+from model.config import Config, ConfigError, dump_config
 from model.parameters import PARAMETER
 from model.trajectory import Trajectory
 
@@ -38,7 +39,7 @@ AT_REST = ("figure.png", "figure.svg", "replay", "movie")  # what shows one stre
 PAUSE_FIRST = "Pause the drive first (Space): what is shown then, its last seconds, is what you take home."
 NO_RUN = "A drive cannot be repeated from a file as a run can. Take CSV, or change from Drive to Run first."
 STORED = "trackride"  # key in the browser's storage
-STORAGE_PATIENCE = 10.0  # s in which a browser says what it has stored
+STORAGE_PATIENCE = 60.0  # s in which a browser says what it has stored; afterwards that is overwritten
 
 log = logging.getLogger("trackride")
 
@@ -89,7 +90,8 @@ class Order:
 
     def name(self, detail: str, suffix: str) -> str:
         """Of a file."""
-        return file_name(self.wish.base.name, self.wish.changes, f"{detail} {self.stretch}".strip(), suffix)
+        stretch = f"{detail} {self.stretch}".strip()
+        return file_name(self.run.config, self.wish.base.name, self.wish.changes, stretch, suffix)
 
     @property
     def title(self) -> str:
@@ -123,10 +125,12 @@ class Porter:
         client: viser.ClientHandle,
         office: Office,
         front: Front,
+        simulate: Simulate,
         intend: Callable[[str, Callable[[], None]], None],
     ) -> None:
         """intend: has the thread that draws do something, the newest of each kind."""
         self._client, self._office, self._front, self._intend = client, office, front, intend
+        self._simulate = simulate
         self._errands, self._memory = Errands(office.fail), Errands(office.fail)
         self._makers: dict[str, tuple[str, Callable[[Order], tuple[str, bytes]]]] = {
             PICTURE: ("", self._picture),
@@ -180,6 +184,10 @@ class Porter:
     def recollect(self) -> None:
         """Go on where this browser was at its last visit, as soon as it says where."""
         self._memory.start(self._ask_browser)
+
+    def run_again(self, config: Config) -> None:
+        """Make a run for the desk of which only the configuration is left, unless one is being made."""
+        self._memory.start(partial(self._run_again, config))
 
     def _begin(self, job: Callable[[], None]) -> None:
         if not self._errands.start(job):
@@ -272,13 +280,21 @@ class Porter:
     # ── In: on the errands' thread ──
 
     def _ask_browser(self) -> None:
+        state: State | None = None
         try:
             stored = self._client.local_storage.get_item(STORED, timeout=STORAGE_PATIENCE)
-        except (TimeoutError, RuntimeError) as error:
+            state = None if stored is None else state_from(stored)
+        except (TimeoutError, RuntimeError, ValueError) as error:
             log.info("nothing from the browser's storage: %s", error)
-            return
-        if stored is not None:
-            self._office.ask("restore", lambda desk: desk.restore(stored))
+        self._office.ask("restore", lambda desk: desk.restore(state))
+
+    def _run_again(self, config: Config) -> None:
+        run: Trajectory | None = None
+        try:
+            run = self._simulate(config, on_progress=lambda part: None, should_stop=self._memory.stopped)
+        finally:
+            if not self._memory.stopped():
+                self._office.ask("again", lambda desk: desk.made_again(config, run))
 
     def _measure(self, name: str, content: bytes) -> None:
         run = self._office.shown

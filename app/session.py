@@ -72,8 +72,8 @@ class Session:
         except Exception:
             self._runner.close()
             raise
-        self._porter = Porter(client, self, self._window, self._intend)
-        self._desk = Desk(self._window, self._runner, presets, self._porter.remember)
+        self._porter = Porter(client, self, self._window, run, self._intend)
+        self._desk = Desk(self._window, self._runner, presets, self._porter)
         self._porter.recollect()
         self._thread = threading.Thread(target=self._show, name="trackride-view", daemon=True)
         self._thread.start()

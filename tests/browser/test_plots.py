@@ -119,6 +119,8 @@ def test_a_mode_swings_in_the_3d_view_until_the_run_is_played(page):
     page.wait_for_function("() => !('/ghost' in __viserMutable.nodePoseData)")
     expect(choice).to_have_value("– the run –")
     explorer.button("Pause").click()
+
+
 def test_a_wheel_hidden_in_a_plot_takes_its_baseline_along(page):
     explorer = Explorer(page)
     show(page, "Loads")
