@@ -290,8 +290,7 @@ def build_scene(trajectory: Trajectory, like: Scene | None = None) -> Scene:
     if like is None or like.layout != layout:
         ground = GroundLine.along(build_road(config), first, last)
         return Scene(trajectory, system, layout, Places(system, layout), ground)
-    same = like.trajectory.config.road == config.road
-    ground = GroundLine.along(like.ground.road if same else build_road(config), first, last, like.ground)
+    ground = GroundLine.along(build_road(config), first, last, like.ground)
     return Scene(trajectory, system, layout, like.places, ground)
 
 

@@ -25,6 +25,7 @@ __all__ = ["Derivatives", "Piece", "Profile", "Road", "build_road"]
 RAMP_AHEAD = 1.0  # m from the first wheel to the default start of the road
 OVERRUN = 1.1  # times the distance at the speed to be kept, and…
 SPARE = 50.0  # … m: how far a run should come
+STRETCH = 100.0  # m by which the reach grows, so that not every speed has a road of its own
 FINEST = 0.01  # m between nodes of a wave that is part of a sum
 
 
@@ -86,7 +87,13 @@ def build_road(config: Config, reach: float = 0.0) -> Road:
     wheels = config.vehicle.road_wheels
     distance = config.drive.speed_kmh / 3.6 * config.simulation.duration
     reach = max(reach, wheels.x[0] + OVERRUN * distance + SPARE)
-    return Road(profile_of(config.road, wheels.x[0], wheels.radius, reach), wheels.radius, reach)
+    return _road(config.road, wheels.x[0], wheels.radius, float(np.ceil(reach / STRETCH) * STRETCH))
+
+
+@lru_cache(maxsize=4)
+def _road(road: configuration.Road, front_wheel: float, radius: float, reach: float) -> Road:
+    """What most sliders leave as it is, and what run, drawing and figures of a configuration share."""
+    return Road(profile_of(road, front_wheel, radius, reach), radius, reach)
 
 
 def profile_of(road: configuration.Road, front_wheel: float, radius: float, reach: float) -> Profile:

@@ -145,10 +145,10 @@ def test_the_road_of_a_drive_is_laid_once_for_many_instants(tab: Tab) -> None:
     drive, stage = LiveDrive(load_config("paper")), Stage(tab)  # type: ignore[arg-type]
     drive.advance(0.1)
     stage.show_live(drive.recent(0.1), drive.road())
-    ground = stage._scene.ground  # type: ignore[union-attr]
+    heights = stage._scene.ground.heights  # type: ignore[union-attr]
     drive.advance(0.2)
     stage.show_live(drive.recent(0.1), drive.road())
-    assert stage._scene.ground is ground  # type: ignore[union-attr]
+    assert stage._scene.ground.heights is heights  # type: ignore[union-attr]
 
 
 def test_a_wheel_s_card_says_when_it_is_in_the_air(scene: Scene) -> None:

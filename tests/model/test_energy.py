@@ -156,7 +156,7 @@ def test_the_same_road_elsewhere_gives_the_same_loads(changes, key, place, shift
     """State and road moved along by the same stretch: everything happens as before, moved."""
     config = PAPER.replace(changes)
     system, road = prepared(config.replace({key: place}))
-    moved_road = build_road(config.replace({key: place + shift}))
+    moved_road = build_road(config.replace({key: place + shift}), reach=shift + 100)
     y, _ = starting_state(system)
     moved_y = y.copy()
     moved_y[: len(system.mass)] += shift

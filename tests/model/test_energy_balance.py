@@ -24,7 +24,7 @@ def paper_run() -> Trajectory:
 
 @pytest.mark.parametrize("option", OPTIONS)
 def test_both_balances_close_with_every_option(option):
-    run = simulate(PAPER.replace({**OPTIONS[option], "simulation.duration": 6}))
+    run = simulate(PAPER.replace({**OPTIONS[option], "simulation.duration": 6, "simulation.rtol": 2e-5}))
     energy = energy_balance(run)
     assert energy.closing_error < JUMPY.get(option, SMOOTH)
     for power in (energy.suspension_power, energy.ground_power, energy.friction_power):
