@@ -122,7 +122,7 @@ class Scene:
     @cached_property
     def load_scale(self) -> float:
         """m of arrow per N: an even share of the weight on each road wheel is as high as the wheel."""
-        weight = self.system.g * float(self.system.mass.sum())
+        weight = float(self.system.weight.sum())
         return 2 * self.layout.radius * self.system.n / weight
 
     @cached_property

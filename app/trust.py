@@ -52,7 +52,7 @@ def balances(run: Trajectory) -> list[Check]:
     """What the whole run says about energy and forces."""
     energy, force = energy_balance(run), load_balance(run)
     system = run.system
-    weight = float(system.mass.sum() * system.g)
+    weight = float(system.weight.sum())
     broken = float(abs(force.residual).max()) / weight
     return [
         Check(

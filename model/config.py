@@ -86,6 +86,12 @@ class RoadSuspension(Section):
     basis: str = _field("vehicle.road_suspension.basis")
     stiffness: float | tuple[float, ...] = _field("vehicle.road_suspension.stiffness")
     damping: float | tuple[float, ...] = _field("vehicle.road_suspension.damping")
+    progression: float = _field("vehicle.road_suspension.progression")
+    rebound_ratio: float = _field("vehicle.road_suspension.rebound_ratio")
+    bump_travel: float | None = _field("vehicle.road_suspension.bump_travel")
+    rebound_travel: float | None = _field("vehicle.road_suspension.rebound_travel")
+    stop_stiffness: float = _field("vehicle.road_suspension.stop_stiffness")
+    stop_damping: float = _field("vehicle.road_suspension.stop_damping")
 
 
 class ImaginaryWheels(Section):

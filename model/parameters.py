@@ -97,12 +97,14 @@ ROAD, DRIVE, SOLVER, NOTES = "Road", "Drive", "Solver", "Notes"
 GROUPS = (SUSPENSION, TRACK, VEHICLE, CONTACT, ROAD, DRIVE, SOLVER, NOTES)
 
 INTEGRATORS = (
-    "dormand-prince", "rk4", "scipy-rk45", "scipy-dop853", "scipy-radau", "scipy-lsoda", "scipy-bdf",
+    "stretched-rk43", "dormand-prince", "rk4", "scipy-rk45", "scipy-dop853", "scipy-radau", "scipy-lsoda", "scipy-bdf",
 )  # fmt: skip
 KILO_N_PER_M, KILO_N_S_PER_M, MILLIMETRES = ("kN/m", 1e-3), ("kN s/m", 1e-3), ("mm", 1e3)
-TORSIONAL = {  # unit of a rate at the wheel -> unit and shown unit of the rate about the joint
+# Unit of a rate at the wheel -> unit and shown unit of the rate about the joint
+TORSIONAL: dict[str, tuple[str, tuple[str, float] | None]] = {
     "N/m": ("N m/rad", ("kN m/rad", 1e-3)),
     "N s/m": ("N m s/rad", ("kN m s/rad", 1e-3)),
+    "1/m²": ("1/rad²", None),
 }
 
 # fmt: off
@@ -115,16 +117,16 @@ PARAMETERS: tuple[Parameter, ...] = (
         group=NOTES, source=OURS, kind="text",
         description="What this configuration is, in a sentence or two."),
 
-    Parameter("vehicle.chassis.mass", "Hull mass", "m_c", "kg", 5125.0, 100, 100000, 1000, 20000, 25,
+    Parameter("vehicle.chassis.mass", "Hull mass", "m_c", "kg", 5125.0, 1, 100000, 1000, 20000, 25,
         group=VEHICLE, source=PAPER_TABLE,
         description="Sprung mass carried by one side's wheels: half of the hull.",
         growth="Road wheels carry more, the imaginary wheels' share falls, and the hull bounces and pitches more "
         "slowly."),
-    Parameter("vehicle.chassis.pitch_inertia", "Pitch inertia", "J_c", "kg m²", 14630.0, 10, 1e7, 2000, 60000, 10,
+    Parameter("vehicle.chassis.pitch_inertia", "Pitch inertia", "J_c", "kg m²", 14630.0, 0.001, 1e7, 2000, 60000, 10,
         group=VEHICLE, source=PAPER_TABLE,
         description="Moment of inertia of the half hull about its centre of mass.",
         growth="The hull pitches more slowly and for longer; on the paper's road it then pitches much further."),
-    Parameter("vehicle.chassis.cg_height", "Centre of mass", "h_cg", "m", 0.95, 0.1, 5, 0.4, 2, 0.01,
+    Parameter("vehicle.chassis.cg_height", "Centre of mass", "h_cg", "m", 0.95, 0.02, 5, 0.4, 2, 0.01,
         group=VEHICLE, source=ASSUMED,
         description="Height of the hull's centre of mass above flat ground in the design pose.",
         growth="Driving and braking forces tip the hull more, so it pitches further."),
@@ -140,7 +142,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         group=VEHICLE, source=PAPER_TABLE, kind="integer",
         description="Number of road wheels on one side, evenly spaced.",
         growth="The vehicle gets longer, each wheel carries less, and the ride on waves gets smoother."),
-    Parameter("vehicle.road_wheels.spacing", "Wheel spacing", "s", "m", 0.7, 0.1, 5, 0.4, 1.5, 0.005,
+    Parameter("vehicle.road_wheels.spacing", "Wheel spacing", "s", "m", 0.7, 0.05, 5, 0.4, 1.5, 0.005,
         group=VEHICLE, source=PAPER_TABLE,
         description="Distance between neighbouring road wheels; Table 1's wheel base of 3.5 m has five such gaps.",
         growth="The wheel base gets longer: on waves the hull heaves and pitches less."),
@@ -194,6 +196,34 @@ PARAMETERS: tuple[Parameter, ...] = (
         group=SUSPENSION, source=PAPER_TABLE, shown=KILO_N_S_PER_M, per_wheel=True,
         description="Damping between hull and each road arm, at the wheel.",
         growth="Bounce and pitch die away sooner, but sharp obstacles hit the hull harder."),
+    Parameter("vehicle.road_suspension.progression", "Progression", "p", "1/m²", 0.0, 0, 10000, 0, 200, 1,
+        group=SUSPENSION, source=OURS,
+        description="How much the spring stiffens with its deflection z from the design pose: its force is "
+        "k_s z (1 + p z²); 0 is the paper's linear spring.",
+        growth="Large deflections meet a harder spring, so that arms turn less far; small ones feel no difference."),
+    Parameter("vehicle.road_suspension.rebound_ratio", "Rebound ratio", "", "", 1.0, 0, 20, 0, 5, 0.05,
+        group=SUSPENSION, source=OURS,
+        description="Damping while a wheel moves down in the hull, as a multiple of the damping while it moves up; "
+        "1 is the paper's damper.",
+        growth="Wheels fall into dips more slowly and the hull is drawn down over a row of bumps."),
+    Parameter("vehicle.road_suspension.bump_travel", "Bump stop at", "", "m", None, 0.01, 2, 0.03, 0.4, 0.005,
+        group=SUSPENSION, source=OURS, shown=MILLIMETRES, optional=True,
+        description="Travel of a wheel upwards in the hull, from the design pose, at which its arm meets the bump "
+        "stop; left out: no stop, as in the paper.",
+        growth="Wheels can rise further before the stop hits the hull."),
+    Parameter("vehicle.road_suspension.rebound_travel", "Rebound stop at", "", "m", None, 0.01, 2, 0.03, 0.4, 0.005,
+        group=SUSPENSION, source=OURS, shown=MILLIMETRES, optional=True,
+        description="Travel of a wheel downwards in the hull, from the design pose, at which its arm meets the "
+        "rebound stop; left out: no stop, as in the paper.",
+        growth="Wheels can follow the ground further down before they are held."),
+    Parameter("vehicle.road_suspension.stop_stiffness", "Stop stiffness", "", "N/m", 5e5, 100, 1e9, 1e4, 5e6, 1e4,
+        group=SUSPENSION, source=ASSUMED, shown=KILO_N_PER_M,
+        description="Stiffness of both stops, at the wheel, on top of the spring.",
+        growth="A stop gives way less and hits harder."),
+    Parameter("vehicle.road_suspension.stop_damping", "Stop damping", "", "N s/m", 1e4, 0, 1e7, 0, 1e5, 500,
+        group=SUSPENSION, source=ASSUMED, shown=KILO_N_S_PER_M,
+        description="Damping of both stops, at the wheel; a stop never pulls.",
+        growth="A stop throws the wheel back less, and its first blow is harder."),
     Parameter("vehicle.imaginary_wheels.enabled", "Imaginary wheels", "", "", True,
         group=TRACK, source=OURS, kind="flag",
         description="Whether imaginary wheels stand in for the track; without them only road wheels carry."),
@@ -205,7 +235,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         group=TRACK, source=ASSUMED, optional=True,
         description="Moment of inertia of one imaginary wheel about its axle; left out: a uniform disc, m r²/2.",
         growth="Speed and drive force swing a little less; loads hardly change."),
-    Parameter("vehicle.imaginary_arms.mass", "Link mass", "", "kg", 5.0, 0.1, 1000, 1, 50, 0.5,
+    Parameter("vehicle.imaginary_arms.mass", "Link mass", "", "kg", 5.0, 0.001, 1000, 1, 50, 0.5,
         group=TRACK, source=ASSUMED,
         description="Mass of the link from a road wheel to the imaginary wheel behind it.",
         growth="A little more weight rests on the ground with each imaginary wheel."),
@@ -323,10 +353,11 @@ PARAMETERS: tuple[Parameter, ...] = (
         group=SOLVER, source=OURS,
         description="Stored samples for each second.",
         growth="Short peaks show more fully; files get larger. The motion stays the same."),
-    Parameter("simulation.integrator", "Integrator", "", "", "dormand-prince",
+    Parameter("simulation.integrator", "Integrator", "", "", "stretched-rk43",
         group=SOLVER, source=OURS, kind="choice", choices=INTEGRATORS,
-        description="dormand-prince: order 5(4), chooses its own steps; rk4: order 4, fixed step; scipy-…: SciPy's "
-        "methods, slower, for comparison."),
+        description="stretched-rk43: order 4(3), chooses its own steps, longer ones than others in the stiff contacts; "
+        "dormand-prince: order 5(4), chooses its own steps; rk4: order 4, fixed step; scipy-…: SciPy's methods, "
+        "slower, for comparison."),
     Parameter("simulation.step", "Fixed step", "h", "s", 0.001, 1e-6, 0.1, 0.0001, 0.005, 0.0001,
         group=SOLVER, source=OURS, shown=("ms", 1000),
         description="Step of the rk4 integrator; the others choose their own.",

@@ -249,6 +249,20 @@ def _one_for_each_wheel(value: Any, positions: tuple[float, ...] | None, count: 
     return None
 
 
+def _arm_can_rise(travel: float | None, length: float, angle_deg: float) -> str | None:
+    return _within_reach(travel, length * (1 + math.sin(math.radians(angle_deg))))
+
+
+def _arm_can_fall(travel: float | None, length: float, angle_deg: float) -> str | None:
+    return _within_reach(travel, length * (1 - math.sin(math.radians(angle_deg))))
+
+
+def _within_reach(travel: float | None, furthest: float) -> str | None:
+    if travel is None or travel < furthest:
+        return None
+    return f"the road arm turns upright before; give less than {furthest:.4g} m"
+
+
 def _few_samples(output_rate: float, duration: float) -> str | None:
     if output_rate * duration <= SAMPLE_LIMIT:
         return None
@@ -289,6 +303,7 @@ def _obstacle_ahead(position: float, height: float, radius: float, wheel_radius:
 
 
 _LAYOUT = tuple(f"{WHEELS}.{key}" for key in ("positions", "count", "spacing", "offset"))
+_ARM = ("vehicle.road_arms.length", "vehicle.road_arms.angle_deg")
 _ROUND = ("road.height", "road.radius")
 
 # The keys a rule needs, and the rule: their values -> what is wrong, or None. The first given gets the fault.
@@ -297,6 +312,8 @@ _RULES: tuple[tuple[tuple[str, ...], Callable[..., str | None]], ...] = (
     (_LAYOUT, _stands_on_wheels),
     (("vehicle.road_suspension.stiffness", *_LAYOUT[:2]), _one_for_each_wheel),
     (("vehicle.road_suspension.damping", *_LAYOUT[:2]), _one_for_each_wheel),
+    (("vehicle.road_suspension.bump_travel", *_ARM), _arm_can_rise),
+    (("vehicle.road_suspension.rebound_travel", *_ARM), _arm_can_fall),
     (("simulation.output_rate", "simulation.duration"), _few_samples),
     (("simulation.step", "simulation.duration", "simulation.integrator"), _few_steps),
     (("road.amplitude", "road.wavelength"), _not_too_steep),

@@ -74,7 +74,7 @@ def test_defaults_are_the_papers_vehicle():
         "ramp": None,
     }
     run = config.simulation
-    assert (run.duration, run.output_rate, run.integrator) == (10, 200, "dormand-prince")
+    assert (run.duration, run.output_rate, run.integrator) == (10, 200, "stretched-rk43")
     assert (run.rtol, run.atol, run.baumgarte_alpha, run.baumgarte_beta) == (1e-4, 1e-6, 20, 20)
 
 

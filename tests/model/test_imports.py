@@ -19,8 +19,10 @@ ROWS = (
     ("model.validation", "model.road_table"),
     ("model.config",),
     ("model.vehicle",),
+    ("model.suspension",),
     ("model.road", "model.equilibrium", "model.trajectory"),
     ("model.equations", "model.kernel"),
+    ("model.steppers",),
     ("model.integrate",),
     ("model.simulate",),
 )
@@ -29,7 +31,7 @@ LEVEL = {module: level for level, row in enumerate(ROWS) for module in row}
 # Libraries with a place of their own: the only modules that may import them.
 PLACES = {
     "numba": {"model.compiled"},
-    "model.compiled": {"model.road_table", "model.kernel", "model.integrate"},
+    "model.compiled": {"model.road_table", "model.kernel", "model.steppers"},
     "threading": {"app.session", "app.runner", "app.errands"},
     "queue": set(),
     "_thread": set(),

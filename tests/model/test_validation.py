@@ -35,7 +35,7 @@ def only_fault(text: str) -> tuple[str, str]:
 @pytest.mark.parametrize(
     ("path", "value", "words"),
     [
-        ("vehicle.chassis.mass", "-5", "-5 is not allowed; give a number from 100 to 100000 kg"),
+        ("vehicle.chassis.mass", "-5", "-5 is not allowed; give a number from 1 to 100000 kg"),
         ("vehicle.chassis.mass", "heavy", "'heavy' is not allowed"),
         ("vehicle.chassis.mass", "", "nothing is not allowed"),
         ("vehicle.chassis.mass", "[5125]", "is not allowed"),
@@ -58,7 +58,7 @@ def only_fault(text: str) -> tuple[str, str]:
         ("drive.speed_kmh", "500", "give a number from 0.5 to 100 km/h"),
         ("simulation.duration", "1000000", "from 0.1 to 600 s"),
         ("simulation.duration", "600", "600 s at 200 samples a second are more than the 100000 samples"),
-        ("simulation.integrator", "euler", "give one of dormand-prince, rk4"),
+        ("simulation.integrator", "euler", "give one of stretched-rk43, dormand-prince"),
         ("road.type", "cobbles", "give one of flat, sine, half_round"),
         ("road.type", "[sine]", "give one of flat"),
         ("road.start", "1", "the first wheel stands at 1.75 m"),
