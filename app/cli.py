@@ -135,7 +135,7 @@ def _fail(message: str, status: int = BAD_INPUT) -> NoReturn:
 
 def _configuration(source: str, changes: list[str] | None) -> Config:
     """The configuration with the values of --set; leaves with all faults printed when there are any."""
-    from model.config import ConfigError, load_config, parse_value
+    from model.config import ConfigError, load_config, parse_value, read_profile
     from model.parameters import PARAMETER
 
     faults, values = [], {}
@@ -150,6 +150,8 @@ def _configuration(source: str, changes: list[str] | None) -> Config:
         except ConfigError as error:
             faults.append(f"--set {change}: {error}")
     try:
+        if values.get("road.file") and "road.points" not in values:
+            values |= read_profile(values["road.file"])
         config = load_config(source).replace(values)
     except ConfigError as error:
         faults.append(str(error))

@@ -5,21 +5,18 @@ Only the thread that draws (app/session.py) uses it. What is to outlast the page
 
 from __future__ import annotations
 
-import json
-import logging
 from collections.abc import Callable, Mapping
-from typing import Protocol
+from dataclasses import replace
+from typing import Any, Protocol
 
 from app.history import REST, Changes, Kept, Runs, first_wish, run_name, same
+from app.memory import PRESETS, State, state_text
 from app.runner import Finished, Wish
 from app.window import Window
-from model.config import Config, ConfigError, dump_config, parse_config
+from model.config import Config, ConfigError
 from model.trajectory import Trajectory
 
-OWN_PRESETS = 30  # that a tab keeps
 COMPARE_EVERY = 0.3  # s from one table of figures to the next while runs follow each other
-
-log = logging.getLogger("trackride")
 
 
 class Wishing(Protocol):
@@ -31,18 +28,24 @@ class Wishing(Protocol):
     def change(self, update: Callable[[Wish], Wish]) -> None: ...
 
 
+class Helper(Protocol):
+    """What the desk asks of the porter; neither blocks."""
+
+    def remember(self, state: str) -> None: ...
+
+    def run_again(self, config: Config) -> None: ...
+
+
 class Desk:
     """Shows what it keeps in the window, and wishes for runs."""
 
-    def __init__(
-        self, window: Window, runner: Wishing, presets: Mapping[str, Config], store: Callable[[str], None]
-    ) -> None:
-        """presets: name -> configuration; store: puts a text where `restore` gets it from at the next visit."""
-        self._window, self._runner, self._store = window, runner, store
+    def __init__(self, window: Window, runner: Wishing, presets: Mapping[str, Config], helper: Helper) -> None:
+        """presets: name -> configuration."""
+        self._window, self._runner, self._helper = window, runner, helper
         self._presets = dict(presets)
         self._own: list[str] = []  # names of the user's presets, oldest first
         self._start = runner.latest
-        self._started_with = dump_config(self._start.config())
+        self._started_with = self._start.config()
         self._changes = Changes(self._start)
         self._runs = Runs()
         self._good: Finished | None = None  # the run that is shown; None: a drive, or nothing yet
@@ -52,7 +55,9 @@ class Desk:
         self._baseline: Kept | None = None
         self._compared = True  # the table of figures is that of the run that is shown
         self._compared_at = 0.0  # when it was made, s
+        self._news_at: float | None = None  # when something came up that the browser is to store, s; None: nothing
         self._stored = ""
+        self._restored = False  # the browser has said what it has, and may be told anew
 
     @property
     def presets(self) -> Mapping[str, Config]:
@@ -70,6 +75,7 @@ class Desk:
         """A run is shown, at `now`, s."""
         fresh = self._good is None or not same(self._good.wish, done.wish)
         self._good, self._good_at, self._rested = done, now, False
+        self._complete(done.trajectory)
         self._kept = self._runs.find(done.trajectory.config)
         self._compared = False
         self._came_true(done.wish, now)
@@ -84,17 +90,21 @@ class Desk:
 
     def tick(self, now: float) -> None:
         """Do what waits for a moment of rest; `now`, s."""
-        if self._good is None or not len(self._good.trajectory.t):
-            return
-        if not self._compared and now - self._compared_at >= COMPARE_EVERY:
-            self._compare(now)
-        if not self._rested and now - self._good_at >= REST and self._settled(self._good.wish):
-            self._rested = True
-            self._keep(self._good)
+        if self._baseline is not None and self._baseline.run is None:
+            self._helper.run_again(self._baseline.config)
+        if self._good is not None and len(self._good.trajectory.t):
+            if not self._compared and now - self._compared_at >= COMPARE_EVERY:
+                self._compare(now)
+            if not self._rested and now - self._good_at >= REST and self._settled(self._good.wish):
+                self._rested = True
+                self._keep(self._good)
+        if self._restored and self._news_at is not None and now - self._news_at >= REST:
             self._remember()
 
     def _came_true(self, wish: Wish, now: float) -> None:
         if self._settled(wish):
+            if not same(wish, self._changes.present):
+                self._news_at = now
             self._changes.note(wish, now)
             self._offer(wish.base)
 
@@ -119,7 +129,7 @@ class Desk:
 
     def pin(self) -> None:
         """Make the run that is shown the baseline."""
-        if self._good is None:
+        if self._good is None or not len(self._good.trajectory.t):
             self._window.say("Only a run can be pinned", "Change from Drive to Run first.")
             return
         self._set_baseline(self._keep(self._good))
@@ -153,7 +163,7 @@ class Desk:
         self._runs.delete(number)
         if self._kept is not None and self._kept.number == number:
             self._kept, self._rested = None, True  # not to be kept again at once
-        self._show()
+        self._news()
 
     def rename(self, name: str) -> None:
         """Name the run that is shown, and keep it."""
@@ -162,22 +172,42 @@ class Desk:
         self._kept = self._runs.rename(self._keep(self._good).number, name)
         if self._baseline is not None and self._baseline.number == self._kept.number:
             self._baseline = self._kept
-        self._show()
+        self._news()
 
     def take_in(self, run: Trajectory, name: str) -> None:
         """Keep a run from outside, and make it the baseline."""
         self._set_baseline(self._runs.keep(Wish(run.config), run, name))
         self._window.say("Baseline pinned", f"{name}. What is shown is compared with it.")
 
+    def made_again(self, config: Config, run: Trajectory | None) -> None:
+        """The run of a configuration that was kept, or None where there can be none."""
+        if run is not None and len(run.t):
+            self._complete(run)
+        elif self._baseline is not None and self._baseline.config == config:
+            self._window.say("No baseline", f"{self._baseline.name} cannot be run again.")
+            self.clear()
+
+    def _complete(self, run: Trajectory) -> None:
+        """Put a run where only its configuration was left."""
+        self._runs.complete(run)
+        baseline = self._baseline
+        if baseline is not None and baseline.run is None and baseline.config == run.config:
+            self._set_baseline(replace(baseline, run=run))
+
     def _keep(self, good: Finished) -> Kept:
         self._kept = self._runs.keep(good.wish, good.trajectory)
-        self._show()
+        self._news()
         return self._kept
 
     def _set_baseline(self, run: Kept | None) -> None:
         self._baseline = run
         self._window.show_baseline(self.baseline)
         self._compared, self._compared_at = False, 0.0
+        self._news()
+
+    def _news(self) -> None:
+        """Show runs and baseline, and have the browser store them soon."""
+        self._news_at = 0.0
         self._show()
 
     @property
@@ -202,6 +232,20 @@ class Desk:
         base = self._runner.latest.base
         self._wish(first_wish(base, config) if config.name == base.name else Wish(config))
 
+    def change_road(self, changes_of: Callable[[Config], dict[str, Any]]) -> None:
+        """Wish for changes to the road of the latest wish (dotted key -> value), if that is a possible one."""
+
+        def changed(wish: Wish) -> Wish:
+            try:
+                changes = changes_of(wish.config())
+            except ConfigError:  # it will be refused
+                return wish
+            for key, value in changes.items():
+                wish = wish.changed(key, value)
+            return Wish(wish.base, wish.changes)
+
+        self._runner.change(changed)
+
     def save_preset(self, name: str) -> None:
         """Make a preset of the configuration that is shown."""
         if self._good is None:
@@ -220,17 +264,17 @@ class Desk:
                 self._presets[own] = config
         self._offer(config)
         self._wish(Wish(config))
-        self._remember()
+        self._news_at = 0.0
         self._window.say("Preset saved", f"{name} is among the presets of this browser.")
 
     def _offer(self, base: Config) -> None:
         """Show this preset as the chosen one, also when it is new."""
         name = next((name for name, config in self._presets.items() if config == base), "")
         if not name:
-            name = next(f"own {k}" for k in range(1, OWN_PRESETS + 2) if f"own {k}" not in self._presets)
+            name = next(f"own {k}" for k in range(1, PRESETS + 2) if f"own {k}" not in self._presets)
             self._own.append(name)
             self._presets[name] = base
-            if len(self._own) > OWN_PRESETS:
+            if len(self._own) > PRESETS:
                 del self._presets[self._own.pop(0)]
         self._window.show_presets(self._presets, name)
 
@@ -240,37 +284,35 @@ class Desk:
 
     # ── From one visit to the next ──
 
-    def restore(self, stored: str) -> None:
-        """Go on where this browser was at its last visit, unless the explorer was started with something else."""
-        try:
-            state = json.loads(stored)
-            own = [parse_config(text) for text in state["presets"]][:OWN_PRESETS]
-            base, config = parse_config(state["base"]), parse_config(state["config"])
-            start = state["start"]
-        except (ValueError, TypeError, KeyError, AttributeError, RecursionError, ConfigError) as error:
-            log.info("what the browser had stored cannot be used: %s", error)
+    def restore(self, state: State | None) -> None:
+        """Go on where this browser was at its last visit; None: it does not tell.
+
+        Presets and runs are there again in any case; parameters and baseline unless the explorer was started with
+        something else, or the user is at work already.
+        """
+        self._restored = True
+        if state is None:
             return
-        for preset in own:
+        for preset in state.presets:
             if preset not in self._presets.values():
                 self._offer(preset)
         self._offer(self._runner.latest.base)
-        wish = first_wish(base, config)
+        for kept in state.runs:
+            self._runs.take_back(kept)
+        self._show()
         latest = self._runner.latest
-        if start == self._started_with and latest.number == self._start.number and not same(wish, latest):
-            self._wish(wish)
+        if state.start != self._started_with or latest.number != self._start.number:
+            return
+        if state.baseline is not None and self._baseline is None:
+            self._set_baseline(self._runs.find(state.baseline.config) or state.baseline)
+        if state.wish is not None and not same(state.wish, latest):
+            self._wish(state.wish)
             self._window.say("Welcome back", "All parameters are as you left them. Undo leads back to the start.")
 
     def _remember(self) -> None:
-        if self._good is None:
-            return
-        stored = json.dumps(
-            {
-                "start": self._started_with,
-                "base": dump_config(self._good.wish.base),
-                "config": dump_config(self._good.trajectory.config),
-                "presets": [dump_config(self._presets[name]) for name in self._own],
-            }
-        )
+        self._news_at = None
+        own = [self._presets[name] for name in self._own]
+        stored = state_text(self._started_with, self._changes.present, own, self._runs, self._baseline)
         if stored != self._stored:
             self._stored = stored
-            self._store(stored)
+            self._helper.remember(stored)

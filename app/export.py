@@ -11,7 +11,7 @@ import numpy as np
 from PIL import Image
 
 from app.controls import shown_text
-from model.parameters import PARAMETER
+from model.config import Config
 
 SIZES = {
     "1280 × 720": (1280, 720),
@@ -111,12 +111,15 @@ def _render(camera: Camera, width: int, height: int, kind: str) -> np.ndarray:
         raise NoPictureError("The browser could not draw the picture. Try a smaller size.") from error
 
 
-def file_name(title: str, changes: Mapping[str, Any], detail: str, suffix: str) -> str:
-    """A safe name: what was run, what was changed, what is in it: "paper-vehicle_speed-22-km-h_1280x720.png"."""
+def file_name(config: Config, title: str, changes: Mapping[str, Any], detail: str, suffix: str) -> str:
+    """A safe name: what was run, what was changed, what is in it: "paper-vehicle_speed-22-km-h_1280x720.png".
+
+    config: with the changes, for their units.
+    """
     parts = [_plain(title) or "run"]
     for key, value in changes.items():
-        parameter = PARAMETER[key]
-        text = shown_text(parameter, value) if isinstance(value, int | float | tuple) else str(value)
+        parameter = config.parameter(key)
+        text = str(value) if value is None or parameter.kind == "choice" else shown_text(parameter, value)
         parts.append(_plain(f"{parameter.label} {text} {parameter.shown_unit}"))
     end = f"_{_plain(detail)}" if detail else ""
     return "_".join(part for part in parts if part)[: NAME_LIMIT - len(end)].rstrip("-_.") + end + suffix

@@ -20,6 +20,7 @@ from model.trajectory import Trajectory, wheel_names
 
 LEFT, RIGHT = 5.25, 5.2  # inches, like all lengths: widths of the columns, picture and plots; tables
 PICTURE = 2.6  # height
+NAMED = 10  # curves of one plot, at most
 HULL = "Hull"  # the curve of its acceleration
 TOP, BOTTOM = HEIGHT - 1.17, 0.5  # of the columns
 MODEL = "Half a vehicle, plane motion, the track as imaginary wheels after Mahalingam & Padmanabhan; loads of one side."
@@ -144,12 +145,19 @@ def _draw(axes: Axes, run: Trajectory, labels: Sequence[str], colours: Sequence[
 
 
 def _name(axes: Axes, labels: Sequence[str], colours: Sequence[str]) -> None:
-    """The curves' names in their colours, in line with the title."""
-    step = min(0.055, 0.54 / len(labels))
-    size = min(6.6, 140 * step)
-    for k, (label, colour) in enumerate(zip(reversed(labels), reversed(colours), strict=True)):
-        x, y = 1 - k * step, 1.035
-        axes.text(x, y, label, transform=axes.transAxes, ha="right", fontsize=size, color=colour, weight="bold")
+    """The curves' names in their colours, in line with the title; of many only as many as there is room for."""
+    named = np.linspace(len(labels) - 1, 0, min(len(labels), NAMED)).round().astype(int)
+    for place, k in enumerate(named):
+        axes.text(
+            1 - 0.055 * place,
+            1.035,
+            labels[k],
+            transform=axes.transAxes,
+            ha="right",
+            fontsize=6.6,
+            color=colours[k],
+            weight="bold",
+        )
 
 
 def _dress(axes: Axes, title: str, end: float, time: float | None) -> None:

@@ -12,6 +12,7 @@ from model.parameters import NOTES, PARAMETER, Parameter
 from model.ride import AIR_TIME, LOAD_PEAK, LOAD_RMS, TRAVEL, Row
 
 ROW = 0.142  # inches, like all lengths: height of a row, at most
+LEAST_ROW = 0.125  # below which wheels are left out of the tables instead
 HEADINGS = 0.9  # height of what stands above and between the rows
 POINTS_PER_ROW = 48.0  # size of text for each inch of a row's height
 HEAD, SUBHEAD = 7.6, 6.1  # points
@@ -38,18 +39,24 @@ class Tables:
         changed = [key for key in shown if before.get(key) != values[key]]
         same = [key for key in shown if key not in changed]
         names = list(dict.fromkeys(name for _, name in wheels))
-        lines = len(hull) + len(names) + len(changed) + -(-len(same) // 2)
+        others = len(hull) + len(changed) + -(-len(same) // 2)
+        told = names if (others + len(names)) * LEAST_ROW <= self._height - HEADINGS else telling(names, wheels)
+        lines = others + len(told) + (len(told) < len(names))
         self._row = min(ROW, (self._height - HEADINGS) / lines)
         self._size = self._row * POINTS_PER_ROW
 
         compared = baseline is not None
         self._hull_table(hull, compared)
-        self._wheel_table(names, wheels, colours, compared)
+        self._wheel_table(told, wheels, colours, compared)
+        if len(told) < len(names):
+            self._remark(f"Of {len(names)} wheels the first and last of each kind, and those with the largest figures.")
+        self._y -= 0.26
         against = "the baseline" if compared else "the paper's vehicle"
         self._head("Parameters", f"changed against {against}: first, marked" if changed else f"as in {against}")
         for key in changed:
-            self._changed_row(PARAMETER[key], values[key], before.get(key))
-        self._other_rows([(PARAMETER[key], values[key]) for key in same])
+            was = _valued(reference.parameter(key), before[key]) if key in before else ""
+            self._changed_row(config.parameter(key), values[key], was)
+        self._other_rows([(config.parameter(key), values[key]) for key in same])
 
     def _head(self, title: str, remark: str = "") -> None:
         self._page.write(self._x, self._y, title, HEAD, weight="bold")
@@ -65,6 +72,10 @@ class Tables:
         self._y -= self._row
         if colour:
             self._page.bar(x or self._x, self._y - 0.24 * self._row, width or self._width, self._row, colour)
+
+    def _remark(self, text: str) -> None:
+        self._next()
+        self._page.write(self._x, self._y, text, SUBHEAD, color=GREY)
 
     def _cell(self, x: float, text: str, **style: Any) -> None:
         self._page.write(x, self._y, text, self._size, **style)
@@ -107,16 +118,15 @@ class Tables:
                 if (figure.label, name) in rows:
                     for offset, text in zip(offsets, _texts(rows[figure.label, name]), strict=False):
                         self._cell(right - offset, text.removesuffix(" %"), ha="right")
-        self._y -= 0.26
 
     # ── Parameters ──
 
-    def _changed_row(self, parameter: Parameter, value: Any, before: Any) -> None:
+    def _changed_row(self, parameter: Parameter, value: Any, was: str) -> None:
         self._next(MARKED)
         self._cell(self._x + 0.02, _named(parameter), weight="bold")
         self._cell(self._x + 1.85, plain(_valued(parameter, value), 32), weight="bold")
-        if before is not None:
-            self._cell(self._x + self._width - 0.02, plain(f"was {_valued(parameter, before)}", 26), ha="right")
+        if was:
+            self._cell(self._x + self._width - 0.02, plain(f"was {was}", 26), ha="right")
 
     def _other_rows(self, parameters: list[tuple[Parameter, Any]]) -> None:
         """In two columns."""
@@ -129,6 +139,18 @@ class Tables:
                 self._next(BAND if number % 2 == 0 else "", x, width)
                 self._cell(x + 0.02, _named(parameter))
                 self._cell(x + width - 0.02, plain(_valued(parameter, value), 24), ha="right")
+
+
+def telling(names: list[str], rows: dict[tuple[str, str], Row]) -> list[str]:
+    """Of road wheels and of imaginary wheels the first, the last, and for each figure the one where it is largest."""
+    chosen: set[str] = set()
+    for kind in "RI":
+        wheels = [name for name in names if name.startswith(kind)]
+        chosen |= {*wheels[:1], *wheels[-1:]}
+        for figure in WHEEL_FIGURES:
+            values = {name: rows[figure.label, name].now or 0.0 for name in wheels if (figure.label, name) in rows}
+            chosen |= {max(values, key=lambda name: values[name])} if any(values.values()) else set()
+    return [name for name in names if name in chosen]
 
 
 def _texts(row: Row) -> tuple[str, str, str]:
@@ -148,6 +170,6 @@ def _valued(parameter: Parameter, value: Any) -> str:
     """A value with its unit, as people read it."""
     if isinstance(value, bool):
         return "yes" if value else "no"
-    if isinstance(value, str):
+    if parameter.kind == "choice":
         return choice_words(value)
     return f"{shown_text(parameter, value)} {parameter.shown_unit}".strip()

@@ -17,7 +17,7 @@ from model.trajectory import Trajectory
 REST = 1.0  # s: changes of the same parameters that follow each other faster are one step
 STEPS = 200  # that can be undone
 RUNS = 20  # that are kept
-MEMORY = 200e6  # bytes of the runs that are kept
+MEMORY = 200e6  # bytes of their trajectories, the newest run's aside
 NAMED_CHANGES = 2  # in the name of a run; the others are counted
 NAME_LIMIT = 80  # characters of a name that the user gives
 RUN_COLOURS = (
@@ -69,14 +69,21 @@ class Kept:
 
     number: int  # unique in its tab, rising
     wish: Wish
-    run: Trajectory
+    config: Config  # wished for
+    run: Trajectory | None  # None: only its configuration is left, so that it can be made again
     name: str
     colour: str  # CSS
     named: bool  # by the user
 
+    @property
+    def given_name(self) -> str:
+        """By the user; empty when it is called after its changes."""
+        return self.name if self.named else ""
+
 
 class Runs:
-    """The runs that are kept. Beyond RUNS of them, or MEMORY, the oldest without a name of the user's goes first."""
+    """The runs that are kept. Beyond RUNS of them the oldest without a name of the user's goes first; beyond MEMORY
+    the trajectories of the oldest go."""
 
     def __init__(self) -> None:
         self._kept: dict[int, Kept] = {}
@@ -97,22 +104,34 @@ class Runs:
 
     def find(self, config: Config) -> Kept | None:
         """The run of this configuration."""
-        return next((kept for kept in self if kept.run.config == config), None)
+        return next((kept for kept in self if kept.config == config), None)
 
     def keep(self, wish: Wish, run: Trajectory, name: str = "") -> Kept:
         """Keep a run, unless one of the same configuration is kept already; that one, or the new one."""
+        self.complete(run)
+        return self.find(run.config) or self._add(wish, run.config, run, name, self._free_colour())
+
+    def take_back(self, kept: Kept) -> Kept:
+        """Keep what was kept at an earlier visit, unless the same configuration is kept already, as `keep` does."""
+        return self.find(kept.config) or self._add(kept.wish, kept.config, kept.run, kept.given_name, kept.colour)
+
+    def complete(self, run: Trajectory) -> None:
+        """Give a run, made again, to what is kept of it."""
         found = self.find(run.config)
-        if found is not None:
-            return found
+        if found is not None and found.run is None:
+            self._kept[found.number] = replace(found, run=run)
+            self._make_room(self._kept[found.number])
+
+    def _add(self, wish: Wish, config: Config, run: Trajectory | None, name: str, colour: str) -> Kept:
         self._last_number += 1
-        kept = Kept(self._last_number, wish, run, name or run_name(wish), self._free_colour(), named=bool(name))
+        kept = Kept(self._last_number, wish, config, run, name or run_name(wish), colour, named=bool(name))
         self._kept[kept.number] = kept
         self._make_room(kept)
         return kept
 
     def rename(self, number: int, name: str) -> Kept:
         """Give a run a name; without one it is called after its changes again."""
-        kept, name = self._kept[number], " ".join(name.split())[:NAME_LIMIT]
+        kept, name = self._kept[number], plain_name(name)
         self._kept[number] = replace(kept, name=name or run_name(kept.wish), named=bool(name))
         return self._kept[number]
 
@@ -120,9 +139,14 @@ class Runs:
         self._kept.pop(number, None)
 
     def _make_room(self, newest: Kept) -> None:
-        while len(self._kept) > 1 and (len(self._kept) > RUNS or sum(size(kept.run) for kept in self) > MEMORY):
-            others = [kept for kept in self if kept is not newest]
-            self.delete(min(others, key=lambda kept: (kept.named, kept.number)).number)
+        others = [kept for kept in self if kept is not newest]
+        if len(self._kept) > RUNS:
+            oldest = min(others, key=lambda kept: (kept.named, kept.number))
+            self.delete(oldest.number)
+            others.remove(oldest)
+        for kept in others:
+            if sum(map(size, self)) > MEMORY:
+                self._kept[kept.number] = replace(kept, run=None)
 
     def _free_colour(self) -> str:
         """The first colour that the fewest runs have."""
@@ -130,9 +154,15 @@ class Runs:
         return min(RUN_COLOURS, key=used.count)
 
 
-def size(run: Trajectory) -> int:
+def size(kept: Kept) -> int:
     """Bytes of a run's arrays."""
-    return sum(array.nbytes for array in vars(run).values() if isinstance(array, np.ndarray))
+    arrays = () if kept.run is None else vars(kept.run).values()
+    return sum(array.nbytes for array in arrays if isinstance(array, np.ndarray))
+
+
+def plain_name(name: str) -> str:
+    """A name of the user's, on one line and not too long."""
+    return " ".join(name.split())[:NAME_LIMIT]
 
 
 def same(one: Wish, other: Wish) -> bool:
@@ -172,12 +202,18 @@ def run_name(wish: Wish) -> str:
 def differences(before: Config, after: Config) -> list[str]:
     """Each parameter that differs, in words: "Speed 15 → 22 km/h"; names and descriptions left out."""
     old, new = before.values(), after.values()
-    return [
-        f"{parameter.label} {_words(parameter, old.get(key))} → {_words(parameter, new.get(key))} "
-        f"{parameter.shown_unit}".rstrip()
+    changed = [
+        key
         for key, parameter in PARAMETER.items()
         if parameter.kind != "text" and parameter.applies_to(after.road.type) and old.get(key) != new.get(key)
     ]
+    return [_difference(before.parameter(key), old.get(key), after.parameter(key), new.get(key)) for key in changed]
+
+
+def _difference(before: Parameter, old: Any, after: Parameter, new: Any) -> str:
+    """The unit once, unless the basis of the rates was changed and with it their unit."""
+    unit = f" {before.shown_unit}" if before.shown_unit != after.shown_unit and old is not None else ""
+    return f"{after.label} {_words(before, old)}{unit} → {_words(after, new)} {after.shown_unit}".rstrip()
 
 
 def _words(parameter: Parameter, value: Any) -> str:
@@ -185,4 +221,4 @@ def _words(parameter: Parameter, value: Any) -> str:
         return "automatic"
     if isinstance(value, bool):
         return "on" if value else "off"
-    return choice_words(value) if isinstance(value, str) else shown_text(parameter, value)
+    return choice_words(value) if parameter.kind == "choice" else shown_text(parameter, value)

@@ -11,7 +11,8 @@ import viser
 
 from app.callbacks import by_user
 from app.colours import wheel_palette
-from app.controls import ControlPanel, Wishes, refusal
+from app.control_panel import ControlPanel
+from app.controls import Wishes, refusal
 from app.driving import DriveState
 from app.exports_panel import Exporter, ExportsPanel
 from app.keys import Keys, add_keys
@@ -19,11 +20,12 @@ from app.mode_show import PERIOD, ModeShow
 from app.playback import Playback
 from app.playback_panel import PlaybackPanel, Player
 from app.plot_panel import PlotPanel
+from app.road_view import RoadAhead
 from app.runner import Driven, Failed, Finished, Refused
 from app.runs_panel import Keeping, RunsPanel
 from app.screen import LEFT, Layout, Screen
 from app.spectrum_panel import Analyst
-from app.style import add_page, apply_theme
+from app.style import add_hints, add_page, apply_theme
 from app.view_panel import Viewer, ViewPanel
 from app.wheel_card import Picker, WheelCard
 from model.config import Config, ConfigError
@@ -57,6 +59,8 @@ class Scene(Protocol):
     def on_pick(self, act: Callable[[int], None]) -> None: ...
 
     def wheel_state(self, wheel: int) -> WheelState | None: ...
+
+    def write_loads(self) -> None: ...
 
     @property
     def load_top(self) -> float | None: ...
@@ -92,6 +96,7 @@ class Window:
         self._drawn: tuple[int, float] | None = None  # run and time that the 3-D view shows
         self._mode: ModeShow | None = None  # in the run's place
         self._run_number = 0
+        self._road_ahead = RoadAhead()
         self._notices: dict[str, viser.NotificationHandle] = {}
         self._screen = Screen(client.camera.image_width, client.camera.image_height)
         layout = self._screen.first()
@@ -112,9 +117,10 @@ class Window:
             self.runs = RunsPanel(gui, self._plots.runs_tab, actions)
             self._plots_panel.dock_right()
             self._player = PlaybackPanel(gui, actions)
+            self._card = WheelCard(gui, actions)
             self._resize(layout)
             add_keys(gui, actions)
-            self._card = WheelCard(gui, actions)
+            add_hints(gui)
         self.scene = make_scene(client, dark)
         self.scene.on_pick(actions.pick_wheel)
 
@@ -137,16 +143,20 @@ class Window:
             self._notify("diverged", "The run did not come to its end", body, "orange", stays=True)
         self._forget("refused")
 
-    def show_drive(self, driven: Driven, *, settled: bool) -> None:
-        """Show how far the drive has come; the plots only when there is something new for them."""
+    def show_drive(self, driven: Driven, time: float, *, settled: bool) -> None:
+        """Show how far the drive has come, or where in its past the user is, at `time`, s.
+
+        The plots follow only when there is something new for them.
+        """
         self._leave_mode()
         before, self._drive = self._drive, driven.state
         state = driven.state
         if before is None or before.past is not state.past:
             self._run = state.past
-            self._plot(state.time)
+            self._plot(time)
         self.scene.show_live(state.recent, state.road)
-        self.scene.draw(state.time)
+        self.scene.draw(time)
+        self._drawn = (self._run_number, time)
         if settled and (before is None or before.config != state.config):
             self._controls.show(state.config, touched=driven.wish.touched)
         if state.ended:
@@ -214,7 +224,7 @@ class Window:
     def show_status(self, under_way: tuple[int, float, float] | None) -> None:
         """Say which run is shown, or how far the next is (number, part done, seconds so far)."""
         if self._drive is not None:
-            self._controls.status.content = status_line("Drive", "changes act at once")
+            self._controls.status.content = status_line("Drive", drive_facts(self._drive))
         elif self._mode is not None:
             mode = self._mode.mode
             facts = f"{mode.frequency:.3g} Hz, shown at {1 / PERIOD:g} Hz · Play: the run"
@@ -235,7 +245,10 @@ class Window:
     # ── Time ──
 
     def draw(self, time: float, elapsed: float = 0.0) -> None:
-        """The 3-D view at a time of the run, s, `elapsed` s of real time after it was drawn last."""
+        """The 3-D view at a time of the run, s, `elapsed` s of real time after it was drawn last.
+
+        Of a drive that goes on, each instant is drawn as it comes.
+        """
         if self._mode is not None:
             if self._mode.since is None:
                 self._mode.since = time
@@ -244,7 +257,8 @@ class Window:
                     self.scene.draw(self._mode.move_on(elapsed))
                 return
             self._end_mode()
-        if self._drive is None and self._run is not None and self._drawn != (self._run_number, time):
+        goes_on = self._drive is not None and not self._drive.stands
+        if not goes_on and self._run is not None and self._drawn != (self._run_number, time):
             self.scene.draw(time)
             self._drawn = (self._run_number, time)
 
@@ -254,11 +268,24 @@ class Window:
             self._player.show_drive(playback, self._drive)
         else:
             self._player.show(playback)
-            if self._drive is None:
-                self._plots.point_at(playback.time)
+        if self._drive is None or self._drive.stands:
+            self._plots.point_at(playback.time)
         self._plots.settle()
+        self.scene.write_loads()
         self._show_wheel()
+        self._show_road(playback.time)
         self._view.show_load_scale(self.scene.load_top)
+
+    def _show_road(self, time: float) -> None:
+        """The side view of the road about the vehicle at a time of the run or drive, s."""
+        if self._drive is not None:
+            view = self._road_ahead.of_drive(self._drive.recent, self._drive.road, time)
+        elif self._run is not None and len(self._run.t):
+            view = self._road_ahead.of_run(self._run, time)
+        else:
+            return
+        if self._controls.road_view.content != view:
+            self._controls.road_view.content = view
 
     # ── Looks ──
 
@@ -338,10 +365,13 @@ class Window:
         self._plots_panel.set_width(layout.right)
         self._plots.set_page_height(layout.page_height)
         self._player.place(layout.player_x, layout.player_width)
+        self._card.place(layout.player_x, layout.player_width)
 
     def _plot(self, time: float) -> None:
         assert self._run is not None
-        self._plots.show(self._run, self._baseline, time, driving=self._drive is not None)
+        drive = self._drive
+        road = drive.road if drive is not None and drive.stands else None
+        self._plots.show(self._run, self._baseline, time, driving=drive is not None, road=road)
 
     def _notify(self, kind: str, title: str, body: str, color: Any, stays: bool = False) -> None:
         """One notification of each kind: a newer one takes the older one's place."""
@@ -357,6 +387,13 @@ class Window:
         notice = self._notices.pop(kind, None)
         if notice is not None:
             notice.remove()
+
+
+def drive_facts(state: DriveState) -> str:
+    """What the status line says of a drive."""
+    if state.ended:
+        return "it came to an end; look back, or restart"
+    return "look back with ← or the slider" if state.stands else "changes act at once"
 
 
 def status_line(name: str, facts: str, trouble: str = "") -> str:

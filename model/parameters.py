@@ -7,13 +7,16 @@ format (SI unless the key names another unit). The order of rows is the order of
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
-Kind = Literal["number", "integer", "choice", "flag", "list", "text"]
-Value = float | int | str | bool | tuple[float, ...] | None
+Kind = Literal["number", "integer", "choice", "flag", "list", "text", "points", "parts"]
+Value = float | int | str | bool | tuple[Any, ...] | None  # tuples hold numbers, or roads that make up a sum
 
 WHEEL_COUNT = (2, 20)  # road wheels a side; also the length of a list with one value for each
+PART_LIMIT = 10  # roads in a sum
+STEEPEST = math.tan(math.radians(85))  # slope of a road's faces: none is steeper
 
 
 @dataclass(frozen=True)
@@ -67,6 +70,8 @@ class Parameter:
             "flag": "true or false",
             "list": f"a list of {WHEEL_COUNT[0]} to {WHEEL_COUNT[1]} numbers {reach}, front wheel first",
             "text": f"a text of at most {self.high:g} printable characters",
+            "points": "points x y, x y, … in m, x growing",
+            "parts": f"a list of at most {PART_LIMIT} roads, each with its type and keys, none of them a sum",
         }[self.kind]
         return words + (", or a list of such numbers, front wheel first" if self.per_wheel else "")
 
@@ -99,6 +104,7 @@ GROUPS = (SUSPENSION, TRACK, VEHICLE, CONTACT, ROAD, DRIVE, SOLVER, NOTES)
 INTEGRATORS = (
     "stretched-rk43", "dormand-prince", "rk4", "scipy-rk45", "scipy-dop853", "scipy-radau", "scipy-lsoda", "scipy-bdf",
 )  # fmt: skip
+ROADS = ("flat", "sine", "half_round", "trapezoid", "step", "random", "profile", "sum")
 KILO_N_PER_M, KILO_N_S_PER_M, MILLIMETRES = ("kN/m", 1e-3), ("kN s/m", 1e-3), ("mm", 1e3)
 # Unit of a rate at the wheel -> unit and shown unit of the rate about the joint
 TORSIONAL: dict[str, tuple[str, tuple[str, float] | None]] = {
@@ -312,8 +318,10 @@ PARAMETERS: tuple[Parameter, ...] = (
         growth="Steeper roads can be climbed without losing speed."),
 
     Parameter("road.type", "Road type", "", "", "sine",
-        group=ROAD, source=PAPER_TEXT, kind="choice", choices=("flat", "sine", "half_round"),
-        description="flat: level ground; sine: waves without end; half_round: one round obstacle on level ground."),
+        group=ROAD, source=PAPER_TEXT, kind="choice", choices=ROADS,
+        description="flat: level ground; sine: waves without end; half_round, trapezoid: one obstacle on level "
+        "ground; step: a kerb up to a higher level; random: rough ground of a class of ISO 8608; profile: measured "
+        "points; sum: several roads on top of each other."),
     Parameter("road.amplitude", "Amplitude", "A", "m", 0.1, 0, 0.5, 0, 0.3, 0.005,
         group=ROAD, source=PAPER_TEXT, shown=MILLIMETRES, roads=("sine",), what_if=True,
         description="Height of a crest above the mean of the road (the paper's 100 mm).",
@@ -323,27 +331,61 @@ PARAMETERS: tuple[Parameter, ...] = (
         description="Distance from crest to crest.",
         growth="Waves longer than the vehicle lift it more gently, as a whole; worst are those that meet its bounce "
         "or pitch frequency."),
-    Parameter("road.start", "First wave", "x_s", "m", None, -50, 1000, 2, 50, 0.1,
-        group=ROAD, source=OURS, roads=("sine",), optional=True,
-        description="Where the waves begin, ahead of the centre of mass at the start; left out: 1 m ahead of the "
-        "first wheel.",
-        growth="The vehicle drives on level ground for longer."),
-    Parameter("road.ramp", "Run-in", "ℓ", "m", None, 0, 1000, 0.5, 50, 0.1,
-        group=ROAD, source=OURS, roads=("sine",), optional=True,
-        description="Stretch over which the waves grow to their full height; left out: one wavelength.",
-        growth="The waves set in more gently."),
     Parameter("road.position", "Obstacle at", "", "m", 4.0, -50, 10000, 2, 50, 0.1,
-        group=ROAD, source=OURS, roads=("half_round",),
-        description="Where the top of the obstacle lies, ahead of the centre of mass at the start.",
+        group=ROAD, source=OURS, roads=("half_round", "trapezoid", "step"),
+        description="Where the middle of the obstacle lies, or a step's foot, ahead of the centre of mass at the "
+        "start.",
         growth="The vehicle meets the obstacle later."),
     Parameter("road.height", "Obstacle height", "", "m", 0.1, 0.001, 2, 0.02, 0.4, 0.01,
-        group=ROAD, source=OURS, shown=MILLIMETRES, roads=("half_round",),
+        group=ROAD, source=OURS, shown=MILLIMETRES, roads=("half_round", "trapezoid", "step"),
         description="Height of the obstacle's top above the ground.",
         growth="Wheels and hull are thrown up harder."),
     Parameter("road.radius", "Obstacle radius", "", "m", 0.2, 0.01, 20, 0.05, 2, 0.01,
         group=ROAD, source=OURS, roads=("half_round",),
         description="Radius of the circle whose part above ground is the obstacle: at least its height.",
         growth="At the same height the obstacle is longer and its edges are flatter: loads peak lower."),
+    Parameter("road.top", "Length of top", "", "m", 0.5, 0.01, 1000, 0.1, 10, 0.1,
+        group=ROAD, source=OURS, roads=("trapezoid",),
+        description="Length of the trapezoid's level top.",
+        growth="The vehicle stays up for longer; what it goes through at either face is further apart."),
+    Parameter("road.base", "Length of base", "", "m", 1.5, 0.01, 2000, 0.1, 20, 0.1,
+        group=ROAD, source=OURS, roads=("trapezoid",),
+        description="Length of the trapezoid on the ground, at least that of its top; its faces are never steeper "
+        "than 85°.",
+        growth="The faces are less steep: loads peak lower."),
+    Parameter("road.roughness_class", "Roughness class", "", "", "C",
+        group=ROAD, source=OURS, roads=("random",), kind="choice", choices=tuple("ABCDEFGH"),
+        description="Class of ISO 8608, from A, a very good road, over C, a poor one, to E to H, ground without a "
+        "road; B, D, F, G lie between. Heights double from class to class."),
+    Parameter("road.seed", "Seed", "", "", 1, 0, 999999, 0, 1000, 1,
+        group=ROAD, source=OURS, roads=("random",), kind="integer",
+        description="Number of the random road: the same number gives the same road anywhere.",
+        growth="It is another road of the same roughness."),
+    Parameter("road.length", "Repeats after", "", "m", 200.0, 20, 10000, 20, 1000, 10,
+        group=ROAD, source=OURS, roads=("random",),
+        description="Length of random road, after which it repeats itself.",
+        growth="It takes longer until the same bumps come again; it is another road of the same roughness."),
+    Parameter("road.file", "Profile file", "", "", "", 0, 500,
+        group=ROAD, source=OURS, roads=("profile",), kind="text",
+        description="CSV file of the profile: two columns, x and y in m; found from the folder of the configuration "
+        "that names it. Beside points it only says where these came from."),
+    Parameter("road.points", "Profile", "", "", "0 0, 6 0, 7 0.1, 8 0.05, 10 0.05",
+        group=ROAD, source=OURS, roads=("profile",), kind="points",
+        description="The profile itself: x y, x y, … in m, at most 200001 points; what the file says, once it has "
+        "been read."),
+    Parameter("road.parts", "Parts", "", "", (),
+        group=ROAD, source=OURS, roads=("sum",), kind="parts",
+        description="The roads whose heights are added up: a list, each with its type and keys."),
+    Parameter("road.start", "Start of road", "x_s", "m", None, -50, 1000, 2, 50, 0.1,
+        group=ROAD, source=OURS, roads=("sine", "profile"), optional=True,
+        description="Where the waves begin, ahead of the centre of mass at the start, or the profile's first point "
+        "lies, at ground level. Left out: 1 m ahead of the first wheel; for a profile, where its points say.",
+        growth="The vehicle drives on level ground for longer."),
+    Parameter("road.ramp", "Run-in", "ℓ", "m", None, 0, 1000, 0.5, 50, 0.1,
+        group=ROAD, source=OURS, roads=("sine", "step"), optional=True,
+        description="Stretch over which the waves grow to their full height, or a step rises. Left out: one "
+        "wavelength; for a step, as steep as a face can be, 85°.",
+        growth="The waves, or the step, set in more gently."),
 
     Parameter("simulation.duration", "Duration", "", "s", 10.0, 0.1, 600, 1, 60, 0.5,
         group=SOLVER, source=OURS,
@@ -400,6 +442,8 @@ def parameter_table() -> str:
                 shown = "–"
             case bool():
                 shown = str(default).lower()
+            case tuple():
+                shown = "none"
             case float() | int():
                 shown = f"{number_text(default)} {parameter.unit}".strip()
             case _:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from model.comfort import Comfort, ride_comfort
 from model.config import SineRoad
+from model.equilibrium import NoEquilibriumError, rest_pose
 from model.road import Road, build_road
 from model.signals import seat, steady
 from model.trajectory import Trajectory, wheel_names
@@ -145,12 +147,17 @@ def summary(trajectory: Trajectory) -> Summary:
 
 
 def suspension_travel(trajectory: Trajectory) -> np.ndarray:
-    """(N, n) m: rise of each road wheel's centre in the hull's frame, from the static pose at t = 0."""
-    system = trajectory.system
-    chassis = trajectory.q[:, system.chassis, None]
-    x, y = np.moveaxis(trajectory.q[:, system.road_wheels, :2] - chassis[..., :2], 2, 0)
+    """(N, n) m: rise of each road wheel's centre in the hull's frame, from the static pose: that at t = 0."""
+    system, q = trajectory.system, trajectory.q
+    if trajectory.t[0] > 0:  # a stretch of a drive, whose parameters may have changed since its start
+        static = system.q_design
+        with suppress(NoEquilibriumError):
+            static = rest_pose(system)[0]
+        q = np.concatenate([static[None], q])
+    chassis = q[:, system.chassis, None]
+    x, y = np.moveaxis(q[:, system.road_wheels, :2] - chassis[..., :2], 2, 0)
     height = np.cos(chassis[..., 2]) * y - np.sin(chassis[..., 2]) * x
-    return height - height[0]
+    return height[-len(trajectory.t) :] - height[0]
 
 
 def imaginary_share(trajectory: Trajectory) -> float:
@@ -269,19 +276,22 @@ def contact_motion(system: System, road: Road, q: np.ndarray, v: np.ndarray) -> 
     )
 
 
-def penetration(trajectory: Trajectory) -> np.ndarray:
-    """(N, W) m: how deep each wheel is in the ground; negative, and −∞ high up, in the air."""
-    return contact_motion(trajectory.system, build_road(trajectory.config), trajectory.q, trajectory.v).depth
+def penetration(trajectory: Trajectory, road: Road | None = None) -> np.ndarray:
+    """(N, W) m: how deep each wheel is in the ground; negative, and −∞ high up, in the air.
+
+    road: another than the configuration's.
+    """
+    return contact_motion(trajectory.system, road or build_road(trajectory.config), trajectory.q, trajectory.v).depth
 
 
-def warnings(trajectory: Trajectory) -> list[RideWarning]:
-    """What the reader of this run should know, each with what it means."""
-    return [
-        *_arms_turned_far(trajectory),
-        *_wheels_sunk_deep(trajectory),
-        *_vehicle_in_the_air(trajectory),
-        *_wheels_in_phase(trajectory),
-    ]
+def warnings(trajectory: Trajectory, road: Road | None = None) -> list[RideWarning]:
+    """What the reader of this run should know, each with what it means. road: another than the configuration's."""
+    return [*motion_warnings(trajectory), *_wheels_sunk_deep(trajectory, road)]
+
+
+def motion_warnings(trajectory: Trajectory) -> list[RideWarning]:
+    """Those of the warnings that need no road."""
+    return [*_arms_turned_far(trajectory), *_vehicle_in_the_air(trajectory), *_wheels_in_phase(trajectory)]
 
 
 def _arms_turned_far(trajectory: Trajectory) -> Iterator[RideWarning]:
@@ -296,8 +306,8 @@ def _arms_turned_far(trajectory: Trajectory) -> Iterator[RideWarning]:
         )
 
 
-def _wheels_sunk_deep(trajectory: Trajectory) -> Iterator[RideWarning]:
-    depth = penetration(trajectory)
+def _wheels_sunk_deep(trajectory: Trajectory, road: Road | None) -> Iterator[RideWarning]:
+    depth = penetration(trajectory, road)
     sample, wheel = np.unravel_index(depth.argmax(), depth.shape)
     if depth[sample, wheel] > SINKING_LIMIT * trajectory.system.r:
         name = wheel_names(trajectory.system)[wheel]

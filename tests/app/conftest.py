@@ -110,6 +110,9 @@ class FakeScene:
     def wheel_state(self, wheel: int) -> WheelState | None:
         return wheel_state(self.runs[-1], wheel, self.times[-1])
 
+    def write_loads(self) -> None:
+        pass
+
     load_top = None
 
     def set_view(self, name: str) -> None:
@@ -123,9 +126,14 @@ class Tab:
     """A browser tab as far as the server can tell: it keeps what it is sent, and can use any control."""
 
     def __init__(
-        self, explorer: Explorer, width: int = 1600, height: int = 900, storage: dict[str, str] | None = None
+        self,
+        explorer: Explorer,
+        width: int = 1600,
+        height: int = 900,
+        storage: dict[str, str] | None = None,
+        mute: bool = False,
     ) -> None:
-        """storage: what the browser has kept from earlier visits."""
+        """storage: what the browser has kept from earlier visits; mute: it does not tell."""
         self._socket = connect(
             explorer.address.replace("http", "ws"),
             subprotocols=[f"viser-v{viser.__version__}"],  # type: ignore[list-item]
@@ -135,6 +143,7 @@ class Tab:
         self.widgets: dict[str, dict[str, Any]] = {}  # uuid -> type, value and props
         self.notifications: list[dict[str, Any]] = []
         self.storage: dict[str, str] = {} if storage is None else storage
+        self._mute = mute
         self.messages: list[dict[str, Any]] = []
         self._thread = threading.Thread(target=self._listen, daemon=True)
         self._thread.start()
@@ -239,7 +248,7 @@ class Tab:
             self.widgets[message["uuid"]] = message
         elif kind == "LocalStorageSetItemMessage":
             self.storage[message["key"]] = message["value"]
-        elif kind == "LocalStorageGetItemRequestMessage":
+        elif kind == "LocalStorageGetItemRequestMessage" and not self._mute:
             self.send(
                 "LocalStorageGetItemResponseMessage",
                 value=self.storage.get(message["key"]),

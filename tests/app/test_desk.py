@@ -11,11 +11,15 @@ import numpy as np
 import pytest
 
 import app.desk
-from app.history import RUNS
-from model.config import dump_config, load_config, parse_config
-from tests.app.conftest import Tab, wait_for
+from app.history import RUNS, Runs
+from app.memory import state_text
+from app.runner import Wish
+from model.config import Config, load_config
+from model.equilibrium import NoEquilibriumError
+from model.trajectory import Trajectory
+from tests.app.conftest import Tab, make_run, simulate_at_once, wait_for
 
-SPEED = "Speed, km/h"
+SPEED, SPEED_KEY = "Speed, km/h", "drive.speed_kmh"
 
 
 @pytest.fixture(autouse=True)
@@ -34,6 +38,12 @@ def html(tab: Tab, mark: str) -> str:
     """The HTML that holds a class."""
     texts = [w["props"]["content"] for w in tuple(tab.widgets.values()) if w["type"] == "GuiHtmlMessage"]
     return next((text for text in texts if f'class="{mark}"' in text), "")
+
+
+def style(tab: Tab) -> list[str]:
+    """Colours of the rows of runs, in the order of their rules."""
+    rules = next(w["props"]["content"] for w in tuple(tab.widgets.values()) if "trackride-runs" in str(w["props"]))
+    return re.findall(r"::before { color: (#\w+)", rules)
 
 
 def text_of(markup: str) -> str:
@@ -181,12 +191,12 @@ def test_the_state_comes_back_with_the_browser(explore: Any, open_tab: Any) -> N
     wait_for(lambda: tab.shows_run(1))
     tab.use("Preset", "Half-round obstacle")
     change(tab, SPEED, 25, 3)
-    wait_for(lambda: "speed_kmh: 25" in storage.get("trackride", ""), "the browser's storage")
+    wait_for(lambda: '"drive.speed_kmh": 25' in storage.get("trackride", ""), "the browser's storage")
     tab.use("Preset name", "Mine")
     tab.use("As they are", "Save preset")
-    wait_for(lambda: "name: Mine" in storage["trackride"])
+    wait_for(lambda: '"name": "Mine"' in storage["trackride"])
     change(tab, SPEED, 26, 5)
-    wait_for(lambda: "speed_kmh: 26" in storage["trackride"])
+    wait_for(lambda: '"drive.speed_kmh": 26' in storage["trackride"])
     tab.close()
     again: Tab = open_tab(explorer, storage=storage)
     wait_for(lambda: again.widget(SPEED)["value"] == 26, "the speed of the last visit")
@@ -196,26 +206,85 @@ def test_the_state_comes_back_with_the_browser(explore: Any, open_tab: Any) -> N
     wait_for(lambda: again.widget(SPEED)["value"] == 25)
 
 
-@pytest.mark.parametrize(
-    "stored", ["", "nonsense", "[]", "null", "{}", '{"presets": [1], "base": 2}', '{"presets": [], "base": "drive: 3"}']
-)
+def test_runs_and_baseline_come_back_with_the_browser(explore: Any, open_tab: Any) -> None:
+    made: list[Config] = []
+
+    def simulate(config: Config, **how: Any) -> Trajectory:
+        made.append(config)
+        return simulate_at_once(config, **how)
+
+    explorer = explore(run=simulate)
+    storage: dict[str, str] = {}
+    tab: Tab = open_tab(explorer, storage=storage)
+    wait_for(lambda: rows(tab) == ["Paper vehicle"])
+    tab.press("Pin this run as the baseline")
+    wait_for(lambda: "Baseline ● Paper vehicle" in text_of(html(tab, "trackride-compared")))
+    change(tab, SPEED, 20, 2)
+    wait_for(lambda: len(rows(tab)) == 2)
+    tab.use("Name", "the <b>quick</b> one")
+    wait_for(lambda: "quick" in storage.get("trackride", ""), "the browser's storage")
+    change(tab, SPEED, 30, 3)
+    wait_for(lambda: len(rows(tab)) == 3)
+    tab.use("Paper vehicle", "✕")
+    wait_for(lambda: len(rows(tab)) == 2)
+    wait_for(lambda: len(json.loads(storage["trackride"])["runs"]) == 2, "the browser's storage")
+    assert rows(tab) == ["Speed 15 → 30 km/h", "the <b>quick</b> one"]
+    colours = style(tab)
+    tab.close()
+    made.clear()
+
+    again: Tab = open_tab(explorer, storage=storage)
+    wait_for(lambda: [row for row in rows(again) if row != "Paper vehicle"] == rows(tab), "the runs of the last visit")
+    wait_for(lambda: set(colours) <= set(style(again)), "their colours")
+    wait_for(lambda: "Baseline ● Paper vehicle" in text_of(html(again, "trackride-compared")))
+    wait_for(lambda: "+100 %" in html(again, "trackride-figures"), "the comparison with the baseline")
+    scene: Any = explorer.sessions[-1]._window.scene
+    assert scene.ghosts[-1].config.drive.speed_kmh == 15
+    assert 20 not in {config.drive.speed_kmh for config in made}  # nobody has asked for that run yet
+    again.use("the <b>quick</b> one", "Compare")
+    wait_for(lambda: scene.ghosts[-1] and scene.ghosts[-1].config.drive.speed_kmh == 20, "the run, made again")
+
+
+def test_a_baseline_that_cannot_be_made_again_is_given_up_with_a_word(explore: Any, open_tab: Any) -> None:
+    def simulate(config: Config, **how: Any) -> Trajectory:
+        if config.drive.speed_kmh == 44:
+            raise NoEquilibriumError("it does not stand")
+        return simulate_at_once(config, **how)
+
+    paper = load_config("paper")
+    wish = Wish(paper).changed(SPEED_KEY, 44)
+    kept = Runs().keep(wish, make_run(wish.config()))
+    tab: Tab = open_tab(explore(run=simulate), storage={"trackride": state_text(paper, Wish(paper), [], [], kept)})
+    wait_for(lambda: [n for n in tab.notifications if n["title"] == "No baseline"], "a word")
+    wait_for(lambda: "No baseline" in text_of(html(tab, "trackride-compared")))
+    wait_for(lambda: json.loads(tab.storage["trackride"])["baseline"] is None)
+
+
+def test_nothing_is_stored_before_the_browser_has_told_what_it_has(explore: Any, open_tab: Any) -> None:
+    storage = {"trackride": "old"}
+    tab: Tab = open_tab(explore(), storage=storage, mute=True)
+    wait_for(lambda: rows(tab) == ["Paper vehicle"], "a run to be kept")
+    time.sleep(0.4)
+    assert storage == {"trackride": "old"}
+
+
+@pytest.mark.parametrize("stored", ["", "nonsense", "null", "{}", '{"presets": [1], "wish": 2, "runs": [{}]}'])
 def test_what_is_no_state_is_left_alone(explore: Any, open_tab: Any, stored: str) -> None:
     tab: Tab = open_tab(explore(), storage={"trackride": stored})
     wait_for(lambda: tab.shows_run(1))
-    time.sleep(0.2)
+    wait_for(lambda: rows(tab) == ["Paper vehicle"])
     assert tab.shows_run(1)
     assert tab.notifications == []
 
 
 def test_what_the_explorer_was_started_with_goes_before_the_last_visit(explore: Any, open_tab: Any) -> None:
     paper = load_config("paper")
-    state = {
-        "start": dump_config(paper),
-        "base": dump_config(paper),
-        "config": dump_config(paper.replace({"drive.speed_kmh": 33})),
-        "presets": [dump_config(paper.replace({"name": "Mine"}))],
-    }
-    tab: Tab = open_tab(explore(load_config("half_round"), "half_round"), storage={"trackride": json.dumps(state)})
+    wish = Wish(paper).changed(SPEED_KEY, 33)
+    kept = Runs().keep(wish, make_run(wish.config()))
+    stored = state_text(paper, wish, [paper.replace({"name": "Mine"})], [kept], kept)
+    tab: Tab = open_tab(explore(load_config("half_round"), "half_round"), storage={"trackride": stored})
     wait_for(lambda: "Mine" in tab.widget("Preset")["props"]["options"], "the saved preset")
+    wait_for(lambda: "Speed 15 → 33 km/h" in rows(tab), "the kept run")
     assert tab.widget("Preset")["value"] == "Half-round obstacle"
-    assert tab.widget(SPEED)["value"] == parse_config(dump_config(load_config("half_round"))).drive.speed_kmh
+    assert tab.widget(SPEED)["value"] == load_config("half_round").drive.speed_kmh
+    assert "No baseline" in text_of(html(tab, "trackride-compared"))

@@ -14,7 +14,10 @@ from PIL import Image
 
 import app.export
 from app.export import NAME_LIMIT, NoPictureError, file_name, framed, movie_frames, take_picture
+from model.config import load_config
 from tests.app.conftest import Tab, trackride_threads, wait_for
+
+PAPER = load_config("paper")
 
 
 class FakeCamera:
@@ -78,19 +81,22 @@ def test_names_tell_preset_changes_and_content() -> None:
         "vehicle.road_suspension.stiffness": 60000.0,
         "road.type": "half_round",
     }
-    name = file_name("Paper vehicle", changes, "1280x720", ".png")
+    name = file_name(PAPER, "Paper vehicle", changes, "1280x720", ".png")
     assert name == (
         "paper-vehicle_speed-22.5-km-h_amplitude-150-mm_road-stiffness-60-kn-m_road-type-half-round_1280x720.png"
     )
+    torsion = {"vehicle.road_suspension.basis": "torsion", "vehicle.road_suspension.stiffness": 9000.0}
+    name = file_name(PAPER.replace(torsion), "Paper vehicle", torsion, "", ".yaml")
+    assert name == "paper-vehicle_road-rates-torsion_road-stiffness-9-kn-m-rad.yaml"
 
 
 def test_names_are_safe_and_short() -> None:
     evil = "../../etc/passwd\0 <b>\u202e CON: *?|" * 20
-    name = file_name(evil, {"vehicle.road_wheels.positions": tuple(range(20, 0, -1))}, "1280x720", ".png")
+    name = file_name(PAPER, evil, {"vehicle.road_wheels.positions": tuple(range(20, 0, -1))}, "1280x720", ".png")
     assert re.fullmatch(r"[a-z0-9][a-z0-9._-]*_1280x720\.png", name)
     assert ".." not in name
     assert len(name) <= NAME_LIMIT + len(".png")
-    assert file_name("日本", {}, "", ".png") == "run.png"
+    assert file_name(PAPER, "日本", {}, "", ".png") == "run.png"
 
 
 def downloads(tab: Tab) -> list[dict[str, Any]]:
@@ -127,6 +133,7 @@ def test_a_hidden_tab_leads_to_a_message_and_the_next_picture_can_be_taken(
             lambda count=count: len([n for n in tab.notifications if n["title"] == "No picture"]) == count,
             "a message",
         )
+        wait_for(lambda: "trackride-errand" not in trackride_threads(), "the errand to end")
     assert downloads(tab) == []
 
 

@@ -217,6 +217,21 @@ def test_everything_fits_on_the_page(case):
     assert lowest > BOTTOM - 0.02
 
 
+@pytest.mark.parametrize("baseline", [False, True])
+def test_of_many_wheels_those_that_matter_are_told_in_type_that_can_be_read(baseline):
+    many = short_run({"vehicle.road_wheels.count": 20})
+    page = compose(
+        many, short_run({"vehicle.road_wheels.count": 20, "road.amplitude": 0.05}) if baseline else None, None, ""
+    )
+    assert min(text.get_fontsize() for text in placed(page)) >= 6.0
+    told = {word for word in words(page) if word[0] in "RI" and word[1:].isdigit()}
+    most_loaded = many.normal_load.max(axis=0)
+    assert told >= {"R1", "R20", "I1", "I19", f"R{most_loaded[:20].argmax() + 1}", f"I{most_loaded[20:].argmax() + 1}"}
+    assert len(told) <= 11
+    assert any(word.startswith("Of 39 wheels") for word in words(page))
+    assert not any(word.startswith("Of ") for word in words(compose(short_run({}), None, None, "")))
+
+
 def test_texts_of_a_row_do_not_run_into_each_other(paper, soft):
     page = compose(soft, paper, None, "Title")
     renderer = FigureCanvasAgg(page.figure).get_renderer()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import app.history
-from app.history import REST, RUN_COLOURS, RUNS, Changes, Runs, run_name, size
+from app.history import REST, RUN_COLOURS, RUNS, Changes, Runs, differences, run_name, size
 from app.runner import Wish
 from model.config import load_config
 from tests.app.conftest import make_run
@@ -130,12 +130,33 @@ def test_the_oldest_unnamed_run_makes_room():
     assert len({kept.colour for kept in runs}) == len(RUN_COLOURS)
 
 
-def test_memory_is_bounded_even_when_all_runs_are_named(monkeypatch: pytest.MonkeyPatch):
-    run = make_run(samples=100)
-    monkeypatch.setattr(app.history, "MEMORY", 2.5 * size(run))
+def test_memory_is_bounded_by_letting_the_oldest_trajectories_go(monkeypatch: pytest.MonkeyPatch):
     runs = Runs()
-    for k in range(4):
-        runs.keep(faster(10 + k), make_run(faster(10 + k).config(), samples=100), name=f"run {k}")
-    assert [kept.number for kept in runs] == [3, 4]
+    first = runs.keep(faster(10), make_run(faster(10).config(), samples=100), name="mine")
+    monkeypatch.setattr(app.history, "MEMORY", 2.5 * size(first))
+    for k in range(1, 4):
+        runs.keep(faster(10 + k), make_run(faster(10 + k).config(), samples=100))
+    assert [kept.run is not None for kept in runs] == [False, False, True, True]
+    assert [kept.config.drive.speed_kmh for kept in runs] == [10, 11, 12, 13]
     huge = runs.keep(faster(90), make_run(faster(90).config(), samples=1000))
-    assert list(runs) == [huge]  # the newest stays, however large
+    assert [kept.number for kept in runs if kept.run is not None] == [huge.number]  # the newest stays, however large
+    runs.complete(make_run(faster(10).config(), samples=100))
+    assert next(iter(runs)).run is not None
+
+
+def test_what_was_kept_at_an_earlier_visit_is_kept_once_with_name_and_colour():
+    runs, earlier = Runs(), Runs()
+    now = runs.keep(Wish(PAPER), make_run(PAPER))
+    earlier.keep(Wish(PAPER), make_run(PAPER))
+    then = earlier.keep(faster(20), make_run(faster(20).config()), name="mine")
+    assert runs.take_back(next(iter(earlier))) is now
+    back = runs.take_back(then)
+    assert (back.name, back.named, back.colour) == ("mine", True, then.colour)
+    assert [kept.number for kept in runs] == [1, 2]
+
+
+def test_rates_of_torsion_bars_are_told_in_their_own_unit():
+    stiffness = "vehicle.road_suspension.stiffness"
+    bars = PAPER.replace({"vehicle.road_suspension.basis": "torsion", stiffness: 9000})
+    assert run_name(Wish(bars).changed(stiffness, 8000)) == "Road stiffness 9 → 8 kN m/rad"
+    assert "Road stiffness 75.53 kN/m → 9 kN m/rad" in differences(PAPER, bars)

@@ -14,7 +14,7 @@ from PIL import Image
 
 import app.errands
 from app.comparison import change_text, comparison_table, figure_text
-from app.imports import RUN_LIMIT, configuration, run_from
+from app.imports import configuration, run_from
 from model.config import SIZE_LIMIT, ConfigError, load_config, parse_config
 from model.ride import comparison
 from model.trajectory import Trajectory
@@ -220,20 +220,21 @@ def test_an_uploaded_run_becomes_the_baseline(explore: Any, open_tab: Any) -> No
     assert scene.ghosts[-1].config.drive.speed_kmh == 44
 
 
-def test_files_of_any_content_lead_to_a_message() -> None:
+def test_files_of_any_content_lead_to_a_message(monkeypatch: pytest.MonkeyPatch) -> None:
     run = make_run(samples=3)
     good = run.to_bytes(".npz")
     assert np.array_equal(run_from("a.npz", good).normal_load, run.normal_load)
     for content in (b"", b"\0" * 100, good[:-100], good[: len(good) // 2], b"PK\x05\x06" + bytes(18)):
         with pytest.raises(ValueError, match="a\\.npz"):
             run_from("a.npz", content)
-    with pytest.raises(ValueError, match="100 MB"):
-        run_from("a.npz", bytes(int(RUN_LIMIT) + 1))
+    monkeypatch.setattr("app.imports.RUN_LIMIT", 2e6)
+    with pytest.raises(ValueError, match="larger than 2 MB"):
+        run_from("a.npz", bytes(2_000_001))
+    monkeypatch.setattr("app.imports.UNPACKED_LIMIT", 5e6)
     bomb = io.BytesIO()
     with zipfile.ZipFile(bomb, "w", zipfile.ZIP_DEFLATED) as archive, archive.open("q.npy", "w") as file:
-        for _ in range(60):
-            file.write(bytes(10_000_000))
-    with pytest.raises(ValueError, match="500 MB"):
+        file.write(bytes(6_000_000))
+    with pytest.raises(ValueError, match="more than 5 MB"):
         run_from("a.npz", bomb.getvalue())
     for content in (b"\xff\xfe", b"a" * (SIZE_LIMIT + 1), b"[", b"- 1"):
         with pytest.raises(ConfigError):

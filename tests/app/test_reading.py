@@ -41,9 +41,9 @@ def run() -> Trajectory:
     return simulate(PAPER)
 
 
-def pictures(text: str) -> list[np.ndarray]:
-    """Pixels of all pictures in HTML, RGBA."""
-    found = re.findall(r"data:image/png;base64,([^\"]+)", text)
+def pictures(text: str, kind: str = "far") -> list[np.ndarray]:
+    """Pixels of a load map's pictures of this kind, RGBA."""
+    found = re.findall(rf'class="{kind}"[^>]+data:image/png;base64,([^"]+)', text)
     return [np.asarray(Image.open(BytesIO(b64decode(data))).convert("RGBA")) for data in found]
 
 
@@ -169,9 +169,10 @@ def test_a_spike_of_one_sample_stands_in_the_load_map() -> None:
     run = make_run(samples=12_001)
     load = np.full_like(run.normal_load, 1e3)
     load[7777, 3] = 50e3
-    road = pictures(load_map(replace(run, normal_load=load)))[0]
-    assert road.shape[1] <= 600
-    assert (road[3] == load_colours(np.array(1.0))).all(axis=1).sum() == 1
+    for kind, most in (("far", 600), ("near", 4000)):
+        road = pictures(load_map(replace(run, normal_load=load)), kind)[0]
+        assert most / 2 < road.shape[1] <= most
+        assert (road[3] == load_colours(np.array(1.0))).all(axis=1).sum() == 1
 
 
 def test_a_baselines_maps_have_the_same_colours_and_end_where_it_ends() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 import pytest
-from playwright.sync_api import Browser
+from playwright.sync_api import Browser, expect
 
 from tests.browser.driver import Explorer, chromium, running_explorer
 
@@ -41,3 +41,14 @@ def open_tab(browser: Browser, address: str) -> Iterator[OpenTab]:
 @pytest.fixture
 def explorer(open_tab: OpenTab) -> Explorer:
     return open_tab()
+
+
+@pytest.fixture(scope="module")
+def at_rest(browser: Browser, address: str) -> Iterator[Explorer]:
+    """A tab that all tests of a module share: opening one takes seconds. Paused, so that it draws only changes."""
+    context = browser.new_context(viewport={"width": 1280, "height": 720})
+    explorer = Explorer(context.new_page()).open(f"{address}/?fixedDpr=0.5")
+    explorer.button("Pause").click()
+    expect(explorer.button("Play").first).to_be_visible()
+    yield explorer
+    context.close()

@@ -14,10 +14,13 @@ from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
 FLAGS = [
     "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
     "--disable-accelerated-2d-canvas", "--disable-background-networking", "--disable-component-update",
-    "--disable-sync", "--no-first-run", "--disable-quic",
+    "--disable-gpu-compositing", "--disable-sync", "--no-first-run", "--disable-quic",
 ]  # fmt: skip
 FIRST_RUN = 120_000  # ms: the interface, and the model's compilation if nobody has run it yet
-SOON = 30_000  # ms: anything else, on a busy machine with software WebGL
+SOON = 60_000  # ms: anything else, on a busy machine with software WebGL…
+DOWNLOAD = 120_000  # ms: … but what the browser has to draw a large picture for
+
+expect.set_options(timeout=SOON)
 
 
 @contextmanager
@@ -80,6 +83,15 @@ class Explorer:
     def value(self, label: str) -> float:
         """What a slider stands at."""
         return float(self.thumb(label).get_attribute("aria-valuenow") or "nan")
+
+    def wait_for_value(self, label: str, condition: str, value: float = 0.0) -> None:
+        """Until a slider stands where the condition, in JavaScript of `now` and `value`, says."""
+        self.page.wait_for_function(
+            "([id, value]) => { const now = Number(document.getElementById(id)"
+            f"?.querySelector('[role=slider]')?.ariaValueNow); return {condition} }}",
+            arg=[self.control(label).get_attribute("id"), value],
+            timeout=SOON,
+        )
 
     def press(self, label: str, key: str) -> None:
         """A key on a slider."""

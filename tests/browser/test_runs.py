@@ -6,24 +6,22 @@ import io
 import re
 from pathlib import Path
 
-import numpy as np
 from PIL import Image
-from playwright.sync_api import Download, expect
+from playwright.sync_api import Download, Page, expect
 
+from app.comparison import change_text, figure_text
+from model import load_config, simulate
+from model.ride import AIR_TIME, comparison
 from model.trajectory import Trajectory
-from tests.browser.driver import SOON, Explorer
+from tests.browser.driver import DOWNLOAD, Explorer
 
-PATIENCE = 90_000  # ms for a download that the browser has to draw for
-
-
-def open_tab_named(explorer: Explorer, name: str) -> None:
-    explorer.page.get_by_role("tab", name=name).click()
+DAMPING = "vehicle.road_suspension.damping"
 
 
 def download(explorer: Explorer, group: str, button: str) -> Download:
     """What comes when a button beside this label is clicked."""
     row = explorer.page.locator("div:has(> div > p > label)").filter(has_text=re.compile(f"^{group}"))
-    with explorer.page.expect_download(timeout=PATIENCE) as download:
+    with explorer.page.expect_download(timeout=DOWNLOAD) as download:
         row.get_by_role("button", name=button).first.click()
     return download.value
 
@@ -32,77 +30,111 @@ def content(download: Download) -> bytes:
     return Path(download.path()).read_bytes()
 
 
-def test_from_a_pinned_vehicle_to_a_figure_that_proves_it(explorer: Explorer) -> None:
-    """The two minutes of the issue: pin, halve the damping, see which wheel is worse off, take a figure home."""
-    page = explorer.page
-    open_tab_named(explorer, "Runs")
-    page.keyboard.press("b")
-    expect(page.get_by_text("Baseline pinned")).to_be_visible(timeout=SOON)
-    page.get_by_text("Suspension", exact=True).click()
-    before = explorer.run_number()
-    explorer.control("Road damping").fill("2.366")
-    explorer.wait_for_run(after=before)
-    table = page.locator(".trackride-figures")
-    expect(table.first).to_contain_text(re.compile(r"rms, m/s².*[+]\d"), timeout=SOON)
-    expect(table.nth(1)).to_contain_text("Time in the air, s")
-    kept = page.get_by_text("Road damping 4.732 → 2.366 kN s/m")
-    expect(kept.last).to_be_visible(timeout=SOON)
-
-    page.keyboard.press("Escape")
-    page.locator(".trackride-compared").click()  # no text box has the keys any more
-    page.keyboard.press("Control+z")
-    explorer.wait_for_run(after=before + 1)
-    expect(explorer.control("Road damping")).to_have_value("4.732", timeout=SOON)
-    page.keyboard.press("Control+Shift+z")
-    explorer.wait_for_run(after=before + 2)
-    expect(explorer.control("Road damping")).to_have_value("2.366", timeout=SOON)
-
-    page.get_by_text("Suspension", exact=True).click()
-    page.get_by_text("Export", exact=True).click()
-    figure = download(explorer, "Figure", "PNG")
-    assert figure.suggested_filename == "paper-vehicle_road-damping-2.366-kn-s-m_figure.png"
-    picture = Image.open(io.BytesIO(content(figure)))
-    assert picture.width > 2000
-    run = download(explorer, "Data", "NPZ")
-    damping = Trajectory.load(run.path()).config.vehicle.road_suspension.damping
-    assert damping == 2366
-
-    # The page is narrow, the picture is wide: the vehicle fills it all the same
-    with page.expect_download(timeout=PATIENCE) as screenshot:
-        explorer.button("Screenshot").click()
-    pixels = np.asarray(Image.open(io.BytesIO(content(screenshot.value))).convert("RGB")).astype(int)
-    red, green, blue = np.moveaxis(pixels, 2, 0)
-    hull = (green > red) & (red > blue) & (green - blue > 20) & (green < 200)
-    columns = np.flatnonzero(hull.sum(axis=0) > 15)
-    assert np.ptp(columns) > 0.5 * pixels.shape[1]
+def fold(page: Page, folder: str) -> None:
+    """Open or close a folder of controls."""
+    page.get_by_text(folder, exact=True).click()
 
 
-def test_a_preset_and_the_last_state_come_back_with_a_reload(explorer: Explorer, tmp_path: Path) -> None:
-    page = explorer.page
-    page.get_by_text("Import and presets", exact=True).click()
-    bad = tmp_path / "bad.yaml"
-    bad.write_text("drive: {speed_kmh: 4000}\nroads: {}\n")
-    before = explorer.run_number()
-    with page.expect_file_chooser() as chooser:
+def upload(explorer: Explorer, file: Path, text: str) -> None:
+    file.write_text(text)
+    with explorer.page.expect_file_chooser() as chooser:
         explorer.button("Open a configuration").click()
-    chooser.value.set_files(bad)
+    chooser.value.set_files(file)
+
+
+def test_from_a_pinned_vehicle_to_a_figure_that_proves_it(at_rest: Explorer) -> None:
+    """The two minutes of the issue: the paper's vehicle, pinned; half the damping; which wheel leaves the ground more
+    often, by how much the ride got worse; a figure to take home."""
+    page = at_rest.page
+    expect(at_rest.control("Preset")).to_have_value("Paper vehicle")
+    page.get_by_role("tab", name="Runs").click()
+    page.keyboard.press("b")
+    expect(page.locator(".trackride-compared")).to_contain_text("Baseline ● Paper vehicle")
+    fold(page, "Suspension")
+    before = at_rest.run_number()
+    at_rest.control("Road damping").fill("2.366")
+    at_rest.wait_for_run(after=before)
+
+    paper = load_config("paper")
+    rows = comparison(simulate(paper.replace({DAMPING: 2366})), simulate(paper))
+    rms = next(row for row in rows if row.figure == "Vertical acceleration, rms")
+    assert rms.change is not None
+    assert rms.change > 1
+    worst = max((row for row in rows if row.figure == AIR_TIME.label), key=lambda row: row.now - row.baseline)
+    assert worst.now > worst.baseline
+    tables = page.locator(".trackride-figures")
+    for table, name, row in ((0, f"{rms.figure}, {rms.unit}", rms), (1, worst.wheel, worst)):
+        line = tables.nth(table).locator("tr").filter(has=page.get_by_role("cell", name=name, exact=True))
+        texts = (figure_text(row.now), figure_text(row.baseline), change_text(row.change))
+        expect(line).to_contain_text("".join(texts))
+
+    kept = page.get_by_text("Road damping 4.732 → 2.366 kN s/m")
+    expect(kept.last).to_be_visible()
+    fold(page, "Suspension")
+    fold(page, "Export")
+    figure = download(at_rest, "Figure", "PNG")
+    assert figure.suggested_filename == "paper-vehicle_road-damping-2.366-kn-s-m_figure.png"
+    assert Image.open(io.BytesIO(content(figure))).width > 2000
+    run = download(at_rest, "Data", "NPZ")
+    assert Trajectory.load(run.path()).config == paper.replace({DAMPING: 2366})
+    fold(page, "Export")
+
+
+def test_undo_and_redo_by_keys(at_rest: Explorer) -> None:
+    page = at_rest.page
+    speed, before = at_rest.value("Speed"), at_rest.run_number()
+    at_rest.press("Speed", "ArrowRight")
+    at_rest.wait_for_run(after=before)
+    at_rest.wait_for_value("Speed", "now > value", speed)
+    page.locator(".trackride-compared").click()  # no box has the keys any more
+    page.keyboard.press("Control+z")
+    at_rest.wait_for_value("Speed", "now === value", speed)
+    page.keyboard.press("Control+Shift+z")
+    at_rest.wait_for_value("Speed", "now > value", speed)
+
+
+def test_faults_of_a_file_are_shown_and_nothing_changes(at_rest: Explorer, tmp_path: Path) -> None:
+    page = at_rest.page
+    fold(page, "Import and presets")
+    before = at_rest.run_number()
+    upload(at_rest, tmp_path / "bad.yaml", "drive: {speed_kmh: 4000}\nroads: {}\n")
     faults = page.locator(".trackride-faults li")
-    expect(faults).to_have_count(2, timeout=SOON)
+    expect(faults).to_have_count(2)
     expect(faults.last).to_contain_text("from 0.5 to 100 km/h")
     page.get_by_role("dialog").get_by_role("button", name="Close").click()
     expect(faults).to_have_count(0)
-    assert explorer.run_number() == before
+    assert at_rest.run_number() == before
+    fold(page, "Import and presets")
 
-    bad.write_text("name: My tank\ndrive: {speed_kmh: 30}\n")
-    with page.expect_file_chooser() as chooser:
-        explorer.button("Open a configuration").click()
-    chooser.value.set_files(bad)
-    explorer.wait_for_run(after=before)
-    expect(explorer.control("Preset")).to_have_value("My tank", timeout=SOON)
-    explorer.press("Amplitude", "End")
-    explorer.wait_for_run(after=before + 1)
-    page.wait_for_timeout(2000)
+
+def test_preset_parameters_runs_and_baseline_come_back_with_a_reload(at_rest: Explorer, tmp_path: Path) -> None:
+    page = at_rest.page
+    fold(page, "Import and presets")
+    upload(at_rest, tmp_path / "tank.yaml", "name: My tank\ndrive: {speed_kmh: 30}\n")
+    expect(at_rest.control("Preset")).to_have_value("My tank")
+    before = at_rest.run_number()
+    at_rest.press("Amplitude", "End")
+    at_rest.wait_for_run(after=before)
+    kept = page.get_by_text("Amplitude 100 → 300 mm")
+    expect(kept.last).to_be_visible()
+    page.keyboard.press("b")
+    heading = page.locator(".trackride-compared")
+    expect(heading).to_contain_text("Baseline ● Amplitude 100 → 300 mm")
+    before = at_rest.run_number()
+    at_rest.press("Speed", "End")
+    at_rest.wait_for_run(after=before)
+    page.wait_for_function(
+        "text => Object.values(localStorage).some(stored => stored.includes(text))", arg='"drive.speed_kmh": 70'
+    )
+
     page.reload()
-    explorer.open(page.url)
-    expect(explorer.control("Preset")).to_have_value("My tank", timeout=SOON)
-    assert (explorer.value("Speed"), explorer.value("Amplitude")) == (30, 300)
+    at_rest.open(page.url)
+    expect(at_rest.control("Preset")).to_have_value("My tank")
+    at_rest.wait_for_value("Speed", "now === value", 70)
+    at_rest.wait_for_value("Amplitude", "now === value", 300)
+    page.get_by_role("tab", name="Runs").click()
+    expect(heading).to_contain_text("Baseline ● Amplitude 100 → 300 mm")
+    expect(page.locator(".trackride-figures").first).to_contain_text(re.compile(r"rms, m/s².*%"))
+    row = page.locator("div:has(> div > p > label)").filter(has_text=re.compile("^Road damping 4.732 → 2.366 kN s/m"))
+    row.get_by_role("button", name="Show").first.click()
+    expect(at_rest.control("Preset")).to_have_value("Paper vehicle")

@@ -16,9 +16,10 @@ SOURCES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob
 # A module imports from rows above its own only. Modules not named stand below all of these.
 ROWS = (
     ("model.compiled", "model.parameters", "model.yaml_text"),
-    ("model.validation", "model.road_table"),
+    ("model.points", "model.road_table"),
+    ("model.validation", "model.profile"),
     ("model.config",),
-    ("model.vehicle",),
+    ("model.vehicle", "model.shapes", "model.random_road"),
     ("model.suspension",),
     ("model.road", "model.equilibrium", "model.trajectory"),
     ("model.equations", "model.kernel"),
@@ -55,6 +56,7 @@ PURE = (
     "app.load_colours",
     "app.trust",
     "app.markup",
+    "app.driving",
 )  # no viser, so that they are tested without a browser
 
 

@@ -93,6 +93,14 @@ def test_each_kind_of_fault(path, value, words):
         ("road", "amplitude: 0.45, wavelength: 0.4", "road.amplitude", "greater than the wavelength, 0.4 m"),
         ("road", "type: half_round, height: 0.3", "road.height", "greater than the radius, 0.2 m"),
         ("road", "type: half_round, position: 2", "road.position", "give at least 2.243 m"),
+        ("road", "type: trapezoid, position: 2.5", "road.position", "give at least 2.82 m"),
+        ("road", "type: trapezoid, top: 2", "road.top", "greater than the base, 1.5 m"),
+        ("road", "type: trapezoid, position: 2.3, top: 0.5, base: 0.5", "road.position", "give at least 2.329 m"),
+        ("road", "type: step, position: 2", "road.position", "give at least 2.07 m"),
+        ("road", "type: random, roughness_class: I", "road.roughness_class", "give one of A, B, C, D, E, F, G, H"),
+        ("road", "type: random, seed: -1", "road.seed", "give a whole number from 0 to 999999"),
+        ("road", "type: profile, points: '0 0, 1 x'", "road.points", "point 2: 'x' is no number"),
+        ("road", "type: profile, points: [0, 0]", "road.points", "give points x y, x y, … in m, x growing"),
     ],
 )
 def test_values_that_do_not_fit_each_other(section, values, path, words):
