@@ -128,7 +128,7 @@ def test_bad_input_names_all_faults_and_writes_nothing(tmp_path):
         "--set road.start=[1: line 1, column 3: expected ',' or ']', but got '<stream end>'",
         f"{path}: drive.speed: unknown key; the nearest known one is drive.speed_kmh",
         f"{path}: drive.speed_kmh: 'fast' is not allowed; give a number from 0.5 to 100 km/h",
-        f"{path}: vehicle.chassis.mass: -1 is not allowed; give a number from 100 to 100000 kg",
+        f"{path}: vehicle.chassis.mass: -1 is not allowed; give a number from 1 to 100000 kg",
     ]
     assert not out.exists()
 

@@ -35,7 +35,7 @@ def only_fault(text: str) -> tuple[str, str]:
 @pytest.mark.parametrize(
     ("path", "value", "words"),
     [
-        ("vehicle.chassis.mass", "-5", "-5 is not allowed; give a number from 100 to 100000 kg"),
+        ("vehicle.chassis.mass", "-5", "-5 is not allowed; give a number from 1 to 100000 kg"),
         ("vehicle.chassis.mass", "heavy", "'heavy' is not allowed"),
         ("vehicle.chassis.mass", "", "nothing is not allowed"),
         ("vehicle.chassis.mass", "[5125]", "is not allowed"),
@@ -49,7 +49,7 @@ def only_fault(text: str) -> tuple[str, str]:
         (f"{WHEELS}.positions", "5", "give a list of 2 to 20 numbers from -50 to 50 m, front wheel first"),
         (f"{WHEELS}.positions", "[1]", "give a list of 2 to 20 numbers"),
         (f"{WHEELS}.positions", "[1, x]", "give a list of 2 to 20"),
-        (f"{WHEELS}.positions", "[1, 1, -1]", "must fall from front to rear, each wheel 0.1 to 5 m behind"),
+        (f"{WHEELS}.positions", "[1, 1, -1]", "must fall from front to rear, each wheel 0.05 to 5 m behind"),
         (f"{WHEELS}.positions", "[2, 1]", "the wheels stand at 2 to 1 m; the centre of mass"),
         (f"{WHEELS}.offset", "2", "the wheels stand at 3.75 to 0.25 m; the centre of mass"),
         ("vehicle.imaginary_wheels.enabled", "2", "give true or false"),
