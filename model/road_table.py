@@ -449,7 +449,8 @@ def nearest(road, X, Y):
             s += step
             if abs(step) < road.final_step[b]:
                 h += step * (h1 + step * (0.5 * h2 + step * h3 / 6.0))
-                found = Y > h  # below the road, D may have other minima
+                # Below the road and far aside, D may have other minima
+                found = Y > h and abs(s - X) <= road.radius
                 break
     if not found and Y >= road.floor[b]:
         s, h = _search_stretches(road, X, Y, b)

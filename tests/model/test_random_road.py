@@ -98,3 +98,9 @@ def test_the_rough_classes_need_the_search():
     assert searched.mean() > 0.5
     cells = (table.stretch[:, 1] - table.stretch[:, 0] + 1).sum() / searched.sum()
     assert cells < 10  # of some twenty under a wheel
+
+
+def test_a_first_guess_that_leads_astray_is_not_trusted():
+    """Between rough waves the iteration can leave the stretch where there is one minimum only."""
+    road = rough("H", **{"road.seed": 3, f"{WHEELS}.radius": 0.06})
+    assert_nearest(road, np.array([[14.37744915, 0.35959997]]))
