@@ -150,18 +150,11 @@ class Control:
             self._one = gui.add_checkbox(label, value, hint=help_text)
         else:
             first = shown_number(parameter, value[0] if isinstance(value, tuple) else value)
-            step = shown_number(parameter, parameter.step)
             if parameter.what_if:
-                low, high = (shown_number(parameter, x) for x in (parameter.slider_low, parameter.slider_high))
-                self._one = gui.add_slider(
-                    label,
-                    float(min(low, first)),
-                    float(max(high, first)),
-                    float(step),
-                    float(first),
-                    hint=help_text,
-                )
+                low, high, step = self._range(first)
+                self._one = gui.add_slider(label, min(low, first), max(high, first), step, first, hint=help_text)
             else:
+                step = shown_number(parameter, parameter.step)
                 self._one = gui.add_number(label, float(first), step=float(step), hint=help_text)
             self._one.precision = max(PRECISION, _decimals(first))
         self._one.on_update(by_user(lambda event: wishes.change(parameter.key, self.value), wishes.fail))
@@ -210,8 +203,15 @@ class Control:
         else:
             shown = shown_number(self.parameter, value)
             self._one.precision = max(PRECISION, _decimals(shown))
+            if self.parameter.what_if and not self._one.min <= shown <= self._one.max:
+                self._one.min, self._one.max, self._one.step = self._range(shown)
             self.widen(value)
             self._one.value = shown
+
+    def _range(self, shown: float) -> tuple[float, float, float]:
+        """Ends and step of the slider for a value, as shown."""
+        low, high, step = self.parameter.slider(file_number(self.parameter, shown))
+        return tuple(float(shown_number(self.parameter, bound)) for bound in (low, high, step))  # type: ignore[return-value]
 
     def widen(self, value: Any) -> None:
         """Give the slider a range that has this value."""

@@ -75,6 +75,13 @@ class Parameter:
         }[self.kind]
         return words + (", or a list of such numbers, front wheel first" if self.per_wheel else "")
 
+    def slider(self, value: float) -> tuple[float, float, float]:
+        """Ends and step of a slider for vehicles like the one with this value: a robot's are a tenth or less."""
+        scale = 1.0
+        while 0.0 < value < scale * self.slider_low:
+            scale /= 10
+        return max(scale * self.slider_low, self.low), scale * self.slider_high, scale * self.step
+
     def torsional(self) -> Parameter:
         """The same as a rate of the torsion spring itself; what is no rate at the wheel stays as it is."""
         if self.unit not in TORSIONAL:

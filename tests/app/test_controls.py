@@ -167,6 +167,16 @@ def test_what_the_user_touches_is_left_alone(server: viser.ViserServer) -> None:
     assert controls["drive.speed_kmh"].value == 15
 
 
+def test_sliders_suit_small_vehicles(server: viser.ViserServer) -> None:
+    controls = panel(server)
+    slider = controls["vehicle.imaginary_suspension.stiffness"]._one
+    usual = (slider.min, slider.max, slider.step)
+    controls.show(load_config("robot"))
+    assert (slider.min, slider.max, slider.step, slider.value) == (0.05, 5, 0.05, 0.4)
+    controls.show(PAPER)
+    assert (slider.min, slider.max, slider.step) == usual
+
+
 def test_rates_of_the_torsion_bar_are_shown_in_its_units(server: viser.ViserServer) -> None:
     controls = panel(server)
     damping = "vehicle.road_suspension.damping"
