@@ -159,7 +159,7 @@ def paper(
         except StudyError as error:
             _fail(str(error), DIVERGED)
     with _writing(out):
-        out.mkdir(exist_ok=True)
+        out.mkdir(parents=True, exist_ok=True)
         for name, content in paper_files(study).items():
             (out / name).write_bytes(content)
     output.print(f"The page is {out / 'index.html'}; its figures are beside it.", markup=False, soft_wrap=True)
@@ -225,7 +225,7 @@ def _check_folder(out: Path) -> None:
     """Leave when files could not be written into that folder, which need not be there yet."""
     if out.exists() and not out.is_dir():
         _fail(f"--out {out}: is a file; give the name of a folder")
-    _check_writes_into(out, out if out.exists() else out.parent)
+    _check_writes_into(out, next(folder for folder in (out, *out.parents) if folder.exists()))
 
 
 def _check_writes_into(out: Path, folder: Path) -> None:

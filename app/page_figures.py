@@ -17,6 +17,7 @@ from model.vehicle import System
 
 DPI = 200  # of a PNG
 WIDTH, HEIGHT = 9.6, 2.6  # inches, of a plot on a page
+HEADROOM = 0.11  # of a plot's height, for the name of a mark
 SIZE, SMALL = 9.5, 8.5  # points
 NAMES = 0.6  # of a plot's width that its curves' names may take
 
@@ -85,6 +86,8 @@ def plots_drawing(
         shown = plots(look)
         for axes, plot in zip(figure.subplots(len(shown), squeeze=False).flat, shown, strict=True):
             draw_plot(axes, plot, look)
+            low, high = axes.get_ylim()
+            axes.set_ylim(low, high + HEADROOM * (high - low) * len(marks or {}))
             for row, (name, x) in enumerate((marks or {}).items()):
                 mark(axes, name, x, look, row)
 
@@ -96,7 +99,7 @@ def mark(axes: Axes, name: str, x: float, look: Look, row: int = 0) -> None:
     axes.axvline(x, color=look.grey, lw=0.9, ls=(0, (4, 2)), zorder=1.5)
     axes.annotate(
         name, (x, 1), xycoords=("data", "axes fraction"), xytext=(4, -2 - 12 * row), textcoords="offset points",
-        va="top", fontsize=SMALL, color=look.grey,
+        va="top", fontsize=SMALL, color=look.grey, zorder=1.6,
     )  # fmt: skip
 
 
@@ -115,7 +118,7 @@ def draw_plot(axes: Axes, plot: Plot, look: Look) -> None:
 
 def _name_curves(axes: Axes, curves: tuple[Curve, ...]) -> None:
     """Their names in their colours, in line with the title, from the right."""
-    places = np.array([1.6 if curve.kind == "static" else 1.0 for curve in reversed(curves)])
+    places = np.array([2.9 if curve.kind == "static" else 1.0 for curve in reversed(curves)])
     step = min(0.034, NAMES / places.sum())
     rights = 1 - step * np.concatenate([[0], np.cumsum(places)[:-1]])
     for x, curve in zip(rights, reversed(curves), strict=True):

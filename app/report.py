@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from app.comparison import NONE, figure_text
 from app.export import file_name
-from app.markup import formula_html
+from app.markup import formula_html, words_html
 from app.page import Html, document, element, joined, picture, table
 from app.page_figures import LIGHT, WIDTH, Drawing, Look, plots_drawing
 from app.parameter_text import value_text
@@ -92,10 +92,10 @@ def run_drawings(run: Trajectory) -> list[Drawing]:
         palette = look.palette(run.system)
         return [*ride_plots(run, palette), *load_plots(run, palette)]
 
-    drawings = [
-        plots_drawing(plot.title, lambda look, number=number: [plots(look)[number]])
-        for number, plot in enumerate(plots(LIGHT))
-    ]
+    def drawing(number: int, title: str) -> Drawing:
+        return plots_drawing(title, lambda look: [plots(look)[number]])
+
+    drawings = [drawing(number, plot.title) for number, plot in enumerate(plots(LIGHT))]
     return [*drawings, spectrum_drawing(run, found)] if len(run.t) >= LEAST_SAMPLES else drawings
 
 
@@ -147,7 +147,7 @@ def _parameters(config: Config) -> Iterator[Html]:
     values, paper = config.values(), Config().values()
     shown = {key: value for key, value in values.items() if PARAMETER[key].group != NOTES}
     changed = [key for key, value in shown.items() if key not in paper or paper[key] != value]
-    yield element("h3", "Other than the paper's vehicle")
+    yield element("h3", "Different from the paper's vehicle")
     if changed:
         heads = ("Parameter", "Symbol", "Here", "In the paper's vehicle", "What it is")
         yield table(
@@ -179,7 +179,7 @@ def _before(paper: Mapping[str, Value], key: str) -> str:
 
 
 def _words(key: str) -> Html:
-    return element("small", PARAMETER[key].description)
+    return element("small", Html(words_html(PARAMETER[key].description)))
 
 
 def _checks(run: Trajectory) -> Html:
