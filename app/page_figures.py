@@ -17,6 +17,7 @@ from model.vehicle import System
 
 DPI = 200  # of a PNG
 WIDTH, HEIGHT = 9.6, 2.6  # inches, of a plot on a page
+LEFT, RIGHT, ABOVE, BELOW = 0.5, 0.12, 0.32, 0.5  # inches around a plot, for its numbers and names
 HEADROOM = 0.11  # of a plot's height, for the name of a mark
 SIZE, SMALL = 9.5, 8.5  # points
 NAMES = 0.6  # of a plot's width that its curves' names may take
@@ -53,8 +54,7 @@ class Drawing:
 
     def bytes(self, suffix: str, look: Look = LIGHT, background: str = "none") -> bytes:
         """The content of a .svg or .png file. background: CSS, or none."""
-        figure = Figure(figsize=(self.width, self.height), dpi=DPI, layout="constrained", facecolor=background)
-        figure.get_layout_engine().set(h_pad=0.06, w_pad=0.06, hspace=0.08)  # type: ignore[union-attr, call-arg]
+        figure = Figure(figsize=(self.width, self.height), dpi=DPI, facecolor=background)
         self.draw(figure, look)
         maker = {".png": "Software", ".svg": "Creator"}[suffix]
         file = io.BytesIO()
@@ -62,6 +62,22 @@ class Drawing:
             file, format=suffix[1:], metadata={"Title": self.title, maker: f"Trackride {version('trackride')}"}
         )
         return file.getvalue()
+
+
+def panels(figure: Figure, rows: int, columns: int) -> list[Axes]:
+    """Axes of one size, from left to right and top to bottom, with the same margins in every figure."""
+    width, height = figure.get_size_inches()
+    across, down = width / columns, height / rows
+    return [
+        figure.add_axes((
+            (column * across + LEFT) / width,
+            1 - ((row + 1) * down - BELOW) / height,
+            (across - LEFT - RIGHT) / width,
+            (down - BELOW - ABOVE) / height,
+        ))
+        for row in range(rows)
+        for column in range(columns)
+    ]  # fmt: skip
 
 
 def plain_axes(axes: Axes, look: Look, title: str = "", x: str = "", y: str = "") -> None:
@@ -84,7 +100,7 @@ def plots_drawing(
 
     def draw(figure: Figure, look: Look) -> None:
         shown = plots(look)
-        for axes, plot in zip(figure.subplots(len(shown), squeeze=False).flat, shown, strict=True):
+        for axes, plot in zip(panels(figure, len(shown), 1), shown, strict=True):
             draw_plot(axes, plot, look)
             low, high = axes.get_ylim()
             axes.set_ylim(low, high + HEADROOM * (high - low) * len(marks or {}))

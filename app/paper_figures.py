@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullLocator
 
-from app.page_figures import SMALL, WIDTH, Drawing, Look, mark, plain_axes, plots_drawing
+from app.page_figures import HEADROOM, SMALL, WIDTH, Drawing, Look, mark, panels, plain_axes, plots_drawing
 from app.paper_words import HARDLY
 from app.plots import load_plots
 from app.ride_plots import ride_plots
@@ -48,12 +48,12 @@ def claims(study: PaperStudy) -> Drawing:
     """Share of the load and rms acceleration over imaginary stiffness, for both kinds of preload."""
 
     def draw(figure: Figure, look: Look) -> None:
-        panels: dict[str, Measure] = {
+        shown: dict[str, Measure] = {
             "Mean load carried by imaginary wheels, %": lambda f: 100 * f.share,
             "Vertical acceleration of the hull, rms, m/s²": lambda f: f.acceleration_rms,
         }
-        panel = figure.subplots(1, 2)
-        for axes, (title, of) in zip(panel, panels.items(), strict=True):
+        panel = panels(figure, 1, 2)
+        for axes, (title, of) in zip(panel, shown.items(), strict=True):
             plain_axes(axes, look, title, "Imaginary stiffness, times Table 1's")
             axes.set_xscale("log")
             axes.set_xticks(TICKS)
@@ -77,13 +77,13 @@ def harmonics(study: PaperStudy) -> Drawing:
     """Amplitudes at multiples of v/λ, as parts of the first, over the road's amplitude and over speed."""
 
     def draw(figure: Figure, look: Look) -> None:
-        left, right = figure.subplots(1, 2)
+        left, right = panels(figure, 1, 2)
         plain_axes(left, look, "Harmonics, % of the fundamental", "Amplitude of the road, mm")
         plain_axes(right, look, "Harmonics, % of the fundamental", "Speed, km/h")
         for axes, sweep, factor in ((left, study.amplitudes, 1e3), (right, study.speeds, 1.0)):
             for number, colour in zip((2, 3), look.accents, strict=True):
                 _line(axes, sweep, _harmonic(number), colour, f"{number} v/λ", factor)
-            axes.set_ylim(0)
+            axes.set_ylim(0, axes.get_ylim()[1] * (1 + HEADROOM))
             _legend(axes, look)
         mark(left, "paper", 100.0, look)
         mark(right, "paper", 15.0, look)

@@ -72,7 +72,6 @@ def vehicle_drawing(run: Trajectory) -> Drawing:
     """The vehicle on its road at the moment of the highest load."""
 
     def draw(figure: Figure, look: Look) -> None:
-        figure.set_layout_engine("none")
         axes = figure.add_axes((0, 0, 1, 1))
         draw_side_view(axes, run, look.palette(run.system), highest_load(run))
 
