@@ -60,8 +60,8 @@ def claims(study: PaperStudy) -> Drawing:
             axes.xaxis.set_minor_locator(NullLocator())
             axes.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}"))
             for name, sweep, colour in (
-                ("wound up by the same angle", study.stiffness, look.accents[0]),
-                ("preloaded by the same force", study.stiffness_same_force, look.accents[1]),
+                ("same preload angle", study.stiffness, look.accents[0]),
+                ("same preload force", study.stiffness_same_force, look.accents[1]),
             ):
                 _line(axes, sweep, of, colour, name)
             axes.set_ylim(0)
