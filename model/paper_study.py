@@ -80,7 +80,6 @@ class Figures:
     traction_share: float  # of mean |traction| on imaginary wheels
     load_peak: float  # N, highest of all wheels
     air: float  # part of the time in the air, of the road wheel that is there longest
-    flying: float  # part of the time with all wheels in the air
     slipping: float  # part of the time at the limit of friction, of the wheel that is there longest
     speed_swing: float  # km/h, largest difference from the speed to be kept
     static_share: float  # of the load on imaginary wheels, at rest
@@ -190,7 +189,6 @@ def figures_of(run: Trajectory, frequency: float) -> Figures:
         traction_share=float(traction[:, n:].sum() / traction.sum()),
         load_peak=float(load.max()),
         air=float((load[:, :n] <= 0).mean(axis=0).max()),
-        flying=float((load <= 0).all(axis=1).mean()),
         slipping=float(((traction >= SLIPPING * system.mu * load) & (load > 0)).mean(axis=0).max()),
         speed_swing=float(3.6 * np.abs(run.v[last, system.chassis, 0] - system.v_ref).max()),
         static_share=float(rest[n:].sum() / rest.sum()),

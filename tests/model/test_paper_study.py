@@ -47,7 +47,6 @@ def test_the_papers_run(stiffness):
     assert figures.static_road_load == pytest.approx(np.mean([8825, 8646, 8468, 8291, 8113, 8973]), abs=1)
     assert figures.static_share == pytest.approx(5 * 1813 / (5 * 1813 + 51316), abs=1e-3)
     assert 0.2 < figures.air < 0.3
-    assert figures.flying == 0
     assert 0 < figures.speed_swing < 0.3
 
 
