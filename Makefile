@@ -3,7 +3,7 @@ PYTHON := $(firstword $(shell command -v python3.11) $(shell command -v python3)
 BIN := .venv/bin
 AS_ROOT := $(if $(filter-out 0,$(shell id -u)),sudo,)
 
-.PHONY: setup run test check bench chromium readme pictures clean
+.PHONY: setup run test check bench chromium readme paper pictures clean
 
 setup: .venv/ready
 
@@ -35,7 +35,11 @@ bench: setup
 readme: setup
 	$(BIN)/python -m tests.readme
 
-pictures: setup chromium
+paper: setup
+	$(BIN)/trackride paper --out build/paper
+
+pictures: setup chromium paper
+	cp build/paper/claims.png assets/pictures/
 	$(BIN)/python -m tests.browser.pictures
 
 clean:

@@ -1,4 +1,4 @@
-"""The commands of `trackride`: explore, run, show.
+"""The commands of `trackride`: explore, run, show, report, paper.
 
 The model and the viewer are imported inside the commands, so that `--help` answers at once.
 """
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from model.trajectory import Trajectory
 
 BAD_INPUT, DIVERGED, CANCELLED = 2, 3, 130  # exit status
-OUT_SUFFIXES = (".npz", ".csv")
+RUN_SUFFIXES, PAGE_SUFFIXES = (".npz", ".csv"), (".html",)
 
 cli = typer.Typer(
     help="Explorer for the ride dynamics of tracked vehicles.",
@@ -94,24 +94,13 @@ def run(
     """
     chosen = _configuration(config, changes)
     if out is not None:
-        _check_writable(out)
-    from model import simulate
-    from model.equilibrium import NoEquilibriumError
-
-    try:
-        with _progress(chosen.name) as on_progress, _interrupt() as should_stop:
-            trajectory = simulate(chosen, on_progress, should_stop)
-    except NoEquilibriumError as error:
-        _fail(str(error))
+        _check_writable(out, RUN_SUFFIXES)
+    trajectory = _simulated(chosen)
     if out is not None:
-        try:
+        with _writing(out):
             trajectory.save(out)
-        except OSError as error:
-            _fail(f"cannot write {out}: {error.strerror}", status=1)
     _report(trajectory)
-    if not trajectory.complete:
-        _say_how_it_ended(trajectory, out)
-        raise typer.Exit(CANCELLED if trajectory.status == "cancelled" else DIVERGED)
+    _leave_unless_complete(trajectory, out)
 
 
 @cli.command(epilog="Example: trackride show paper --set road.amplitude=0.05 > mine.yaml")
@@ -121,6 +110,59 @@ def show(config: ConfigArgument = "paper", changes: SetOption = None) -> None:
     from model.config import dump_config
 
     sys.stdout.write(dump_config(chosen))
+
+
+@cli.command(epilog="Example: trackride report half_round --set drive.speed_kmh=25 --out report.html")
+def report(
+    config: ConfigArgument = "paper",
+    changes: SetOption = None,
+    out: Annotated[Path, typer.Option(help="Where to write the page: a name ending in .html.")] = Path("report.html"),
+) -> None:
+    """Run a configuration and write a report: one page to read, print and pass on.
+
+    Exit status: 0 done; 2 bad input, nothing written; 3 diverged and 130 interrupted, the good part reported.
+    """
+    chosen = _configuration(config, changes)
+    _check_writable(out, PAGE_SUFFIXES)
+    trajectory = _simulated(chosen)
+    from app.report import report_page
+
+    page = report_page(trajectory, config)
+    with _writing(out):
+        out.write_text(page, encoding="utf-8")
+    _leave_unless_complete(trajectory, out)
+    output.print(f"The report is in {out}.", markup=False, soft_wrap=True)
+
+
+@cli.command(epilog="Example: trackride paper --out build/paper")
+def paper(
+    out: Annotated[Path, typer.Option(help="Folder to write into; it is made if it is not there.")],
+) -> None:
+    """Repeat what the paper ran: its figures, its statements one by one, and what our assumptions do to them.
+
+    Exit status: 0 done; 2 bad folder, 3 a run diverged, 130 interrupted: nothing written.
+    """
+    _check_folder(out)
+    from app.paper import paper_files
+    from model.paper_study import StudyError, study_paper
+
+    with _progress("The paper's runs") as on_progress, _interrupt() as should_stop:
+
+        def go_on(part: float) -> None:
+            if on_progress is not None:
+                on_progress(part)
+            if should_stop():
+                _fail("Interrupted: nothing was written.", CANCELLED)
+
+        try:
+            study = study_paper(go_on)
+        except StudyError as error:
+            _fail(str(error), DIVERGED)
+    with _writing(out):
+        out.mkdir(parents=True, exist_ok=True)
+        for name, content in paper_files(study).items():
+            (out / name).write_bytes(content)
+    output.print(f"The page is {out / 'index.html'}; its figures are beside it.", markup=False, soft_wrap=True)
 
 
 def _say(message: str, style: str = "") -> None:
@@ -160,17 +202,49 @@ def _configuration(source: str, changes: list[str] | None) -> Config:
     return config
 
 
-def _check_writable(out: Path) -> None:
-    """Leave when the run could not be written there: better now than after computing."""
-    if out.suffix not in OUT_SUFFIXES:
-        _fail(f"--out {out}: the name must end in {' or '.join(OUT_SUFFIXES)}")
+def _simulated(config: Config) -> Trajectory:
+    """The run, with a progress bar; Ctrl+C ends it early."""
+    from model import simulate
+    from model.equilibrium import NoEquilibriumError
+
+    try:
+        with _progress(config.name) as on_progress, _interrupt() as should_stop:
+            return simulate(config, on_progress, should_stop)
+    except NoEquilibriumError as error:
+        _fail(str(error))
+
+
+def _check_writable(out: Path, suffixes: tuple[str, ...]) -> None:
+    """Leave when a file could not be written there: better now than after computing."""
+    if out.suffix not in suffixes:
+        _fail(f"--out {out}: the name must end in {' or '.join(suffixes)}")
     if out.is_dir():
         _fail(f"--out {out}: is a folder; give the name of a file")
+    _check_writes_into(out, out.parent)
+
+
+def _check_folder(out: Path) -> None:
+    """Leave when files could not be written into that folder, which need not be there yet."""
+    if out.exists() and not out.is_dir():
+        _fail(f"--out {out}: is a file; give the name of a folder")
+    _check_writes_into(out, next(folder for folder in (out, *out.parents) if folder.exists()))
+
+
+def _check_writes_into(out: Path, folder: Path) -> None:
     try:
-        with tempfile.TemporaryFile(dir=out.parent):
+        with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError as error:
-        _fail(f"--out {out}: cannot write into the folder {out.parent}: {error.strerror}")
+        _fail(f"--out {out}: cannot write into the folder {folder}: {error.strerror}")
+
+
+@contextmanager
+def _writing(out: Path) -> Iterator[None]:
+    """Leave with a message when writing fails after all."""
+    try:
+        yield
+    except OSError as error:
+        _fail(f"cannot write {out}: {error.strerror}", status=1)
 
 
 @contextmanager
@@ -242,9 +316,13 @@ def _figure_table(trajectory: Trajectory, figures: Summary) -> Table:
     return table
 
 
-def _say_how_it_ended(trajectory: Trajectory, out: Path | None) -> None:
+def _leave_unless_complete(trajectory: Trajectory, out: Path | None) -> None:
+    """Say how a run ended early, and leave with the status for it."""
+    if trajectory.complete:
+        return
     _say(f"The run ended early: {trajectory.status}.", style="red")
     if trajectory.advice:
         _say(trajectory.advice)
     if out is not None:
         _say(f"The good part, up to t = {trajectory.t[-1]:g} s, is in {out}.")
+    raise typer.Exit(CANCELLED if trajectory.status == "cancelled" else DIVERGED)

@@ -1,0 +1,17 @@
+"""Parameters and their values as people read them, in plain text."""
+
+from __future__ import annotations
+
+from app.controls import choice_words, shown_text
+from model.parameters import Parameter, Value
+
+
+def value_text(parameter: Parameter, value: Value) -> str:
+    """A value with its unit: "75.53 kN/m"; "computed" for one that follows from others."""
+    if value is None:
+        return "computed"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, str):
+        return choice_words(value)
+    return f"{shown_text(parameter, value)} {parameter.shown_unit}".strip()
