@@ -31,7 +31,7 @@ def modes_page(excitation: float | None, modes: Modes | None) -> str:
         return page(f"{_table(head + rows)}<p>The vehicle has no rest pose to swing about.</p>")
     for k, mode in enumerate(modes.swinging, 1):
         damping = f"{100 * mode.damping_ratio:.0f} %"
-        rows += _row(f"{k} {mode.name}", f"{mode.frequency:.2f} Hz", damping, _moving(mode))
+        rows += _row(f"{k} {mode.name}", f"{mode.frequency:.2f} Hz", damping, moving(mode))
     return page(f"{_table(head + rows)}<p>{NOTE}</p>{_creeping(modes.creeping)}")
 
 
@@ -43,7 +43,8 @@ def _row(name: str, frequency: str, damping: str, meaning: str) -> str:
     return f"<tr><th>{name}</th><td>{frequency}</td><td>{damping}</td><td>{meaning}</td></tr>"
 
 
-def _moving(mode: Mode) -> str:
+def moving(mode: Mode) -> str:
+    """What moves in a mode, by its part in the kinetic energy."""
     told = [(WORDS.get(name, name[0].lower() + name[1:]), share) for name, share in mode.shares]
     return ", ".join(f"{words} {100 * share:.0f} %" for words, share in told if share >= WORTH_TELLING)
 

@@ -8,9 +8,11 @@ from typing import NamedTuple
 
 from matplotlib.figure import Figure
 
+from app.comfort_page import FIGURES, PLACES
 from app.comparison import NONE, figure_text
 from app.export import file_name
 from app.markup import formula_html, words_html
+from app.modes_page import NOTE, moving
 from app.page import Html, document, element, joined, picture, table
 from app.page_figures import LIGHT, WIDTH, Drawing, Look, plots_drawing
 from app.parameter_text import value_text
@@ -19,10 +21,12 @@ from app.ride_plots import ride_plots
 from app.side_view import draw_side_view
 from app.spectrum_plot import LEAST_SAMPLES, Mark, named, spectrum_plot
 from app.trust import balances, drift, work
+from model.comfort import ride_comfort
 from model.config import Config, dump_config
+from model.modes import Modes, vehicle_modes
 from model.parameters import GROUPS, NOTES, PARAMETER, Value
 from model.ride import WHEEL_FIGURES, comparison, warnings
-from model.spectrum import marks
+from model.spectrum import excitation
 from model.trajectory import Trajectory
 
 MODEL = (
@@ -41,7 +45,7 @@ class RideRow(NamedTuple):
 
 def report_page(run: Trajectory, source: str) -> str:
     """The report as an HTML file. source: the name of the preset or file that was run. It needs one sample."""
-    config = run.config
+    config, modes = run.config, vehicle_modes(run.config)
     sections = [
         _early_end(run),
         element("p", config.description) if config.description else Html(),
@@ -50,7 +54,11 @@ def report_page(run: Trajectory, source: str) -> str:
         element("h2", "What to be wary of"),
         _warnings(run),
         element("h2", "How it rides"),
-        *(picture(drawing) for drawing in run_drawings(run)),
+        *(picture(drawing) for drawing in run_drawings(run, modes)),
+        element("h2", "How it feels"),
+        _comfort(run),
+        element("h2", "How it likes to swing"),
+        _modes(modes),
         element("h2", "Each wheel"),
         _wheels(run),
         element("h2", "Parameters"),
@@ -83,9 +91,9 @@ def highest_load(run: Trajectory) -> float:
     return float(run.t[run.normal_load.max(axis=1).argmax()])
 
 
-def run_drawings(run: Trajectory) -> list[Drawing]:
+def run_drawings(run: Trajectory, modes: Modes) -> list[Drawing]:
     """All plots of a run: ride, loads, spectrum."""
-    found = named(marks(run.config))
+    found = named(excitation(run.config), modes)
 
     def plots(look: Look) -> list[Plot]:
         palette = look.palette(run.system)
@@ -139,6 +147,29 @@ def _wheels(run: Trajectory) -> Html:
         [[wheel, *(rows.get((wheel, figure.label), NONE) for figure in WHEEL_FIGURES)] for wheel in wheels],
         "numbers",
     )
+
+
+def _comfort(run: Trajectory) -> Html:
+    felt = [(place, ride_comfort(run, point(run.config))) for place, point in PLACES]
+    rows = [
+        [f"{figure.name}, {figure.unit}".strip(", "), *(_number(figure.value(of)) for _, of in felt), figure.meaning]
+        for figure in FIGURES
+    ]
+    words = ["In words", *(of.reaction for _, of in felt), "of ISO 2631-1, the harsher one where two apply"]
+    return table(["", *(place for place, _ in felt), ""], [*rows, words], "facts")
+
+
+def _number(value: float | None) -> str:
+    return NONE if value is None else figure_text(value)
+
+
+def _modes(modes: Modes) -> Html:
+    rows = [
+        [mode.name, f"{mode.frequency:.2f} Hz", f"{100 * mode.damping_ratio:.0f} %", moving(mode)]
+        for mode in modes.swinging
+    ]
+    heads = ("Mode", "Frequency", "Damping", "What moves, by its part in the energy")
+    return joined((table(heads, rows, "facts"), element("p", NOTE)))
 
 
 def _parameters(config: Config) -> Iterator[Html]:
@@ -196,7 +227,7 @@ def _judgement(good: bool | None) -> Html:
 
 
 def _repeat(config: Config, source: str) -> Iterator[Html]:
-    file = file_name(config.name, {}, "", ".yaml")
+    file = file_name(config, config.name, {}, "", ".yaml")
     yield element(
         "p",
         f"This report was made from “{source}”. The text below is the whole configuration, defaults and changes "
