@@ -216,7 +216,7 @@ class Porter:
     def _replay(self, order: Order) -> tuple[str, bytes]:
         from app.replay import replay_html
 
-        page = replay_html(order.run, order.title, order.dark, should_stop=self._errands.stopped)
+        page = replay_html(order.run, order.baseline, order.title, order.dark, should_stop=self._errands.stopped)
         if page is None:
             raise StoppedError("The replay was cancelled.")
         return order.name("replay", ".html"), page.encode()
