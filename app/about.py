@@ -122,8 +122,8 @@ def _default(parameter: Parameter) -> str:
     value = parameter.default
     if isinstance(value, bool):
         return "on" if value else "off"
-    if isinstance(value, str):
-        return choice_words(value)
+    if parameter.kind == "choice":
+        return choice_words(str(value))
     if value is None:
         return f"computed{parameter.shown_unit and f' ({parameter.shown_unit})'}"
     return f"{shown_text(parameter, value)} {parameter.shown_unit}".strip()

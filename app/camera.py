@@ -37,7 +37,7 @@ VIEWS: dict[View, _Aim] = {
     "side": _Aim(90.0, 7.0, None, -0.75, 2.1),
     "three-quarter": _Aim(52.0, 15.0, None, -0.4, 2.0),
     "front": _Aim(12.0, 7.0, None, -0.2, 2.0),
-    "wheel": _Aim(78.0, 5.0, 1.8, -0.3, 1.1),
+    "wheel": _Aim(78.0, 5.0, 1.8, -1.0, 1.1),
 }
 
 

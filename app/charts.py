@@ -7,6 +7,7 @@ from typing import Any
 import viser
 
 from app.plots import TIME, Curve, Plot
+from app.screen import AXIS_NAME
 
 FONT = "11px system-ui, sans-serif"
 OPACITY = {"run": "", "baseline": "80", "static": "90"}  # of curves by kind, as the last byte of their colour
@@ -15,12 +16,12 @@ DASH = {"baseline": (4, 3), "static": (1, 3)}
 KEY = {"static": "dotted: at rest", "baseline": "dashed: baseline"}
 TICKS: viser.uplot.Axis_Ticks = {"size": 4, "width": 1}
 NUDGE = 1e-9  # s. A chart misses a new size that comes with new data, and works out its axes when the range changes.
-PADDING = (14, 18, 0, 0)  # px; less on top would cut the highest tick's label
+PADDING = (12, 18, 0, 0)  # px; less on top would cut the highest tick's label
 TIME_KEY, OTHER_KEY = "trackride-time", "trackride-frequency"  # charts with the same key share cursor and zoom
 
 
 class Charts:
-    """Charts in a container (a tab) of `gui`, each of the same height, px."""
+    """Charts in a container (a tab) of `gui`; the last one has room for the axis's name below the others' height."""
 
     def __init__(self, gui: viser.GuiApi, container: Any) -> None:
         self._gui, self._container = gui, container
@@ -30,7 +31,7 @@ class Charts:
         self._nudge = 0.0
 
     def show(self, plots: tuple[Plot, ...], height: int) -> None:
-        """Show these plots. Charts are made anew only when there are other curves."""
+        """Show these plots, each of this height, px. Charts are made anew only when there are other curves."""
         shapes = [[(curve.label, curve.kind) for curve in plot.curves] + [plot.title] for plot in plots]
         before = [[(curve.label, curve.kind) for curve in plot.curves] + [plot.title] for plot in self._plots]
         restyled = [plot.curves for plot in plots] != [plot.curves for plot in self._plots]
@@ -43,7 +44,7 @@ class Charts:
         for chart, plot in zip(self._charts, plots, strict=True):
             if restyled:
                 chart.series = _series(plot)
-            chart.height = height
+            chart.height = height + (AXIS_NAME if plot is plots[-1] else 0)
             x, *values = plot.data
             x = x.copy()
             x[-1] += self._nudge
@@ -59,8 +60,8 @@ class Charts:
     def _chart(self, plot: Plot, with_axis: bool) -> viser.GuiUplotHandle:
         low, high = ({"soft": bound, "mode": 1} for bound in plot.least) if plot.least else ({}, {})
         axis: viser.uplot.Axis = {"font": FONT, "ticks": TICKS, "grid": {"width": 1}}
-        named: viser.uplot.Axis = {"labelFont": FONT, "labelSize": 16, "labelGap": 0}
-        along, upright = axis | {"size": 24}, axis | named | {"size": 40, "space": 20, "label": plot.unit}
+        named: viser.uplot.Axis = {"labelFont": FONT, "labelSize": AXIS_NAME, "labelGap": 0}
+        along, upright = axis | {"size": 24}, axis | named | {"size": 40, "space": 18, "label": plot.unit}
         kinds = {curve.kind for curve in plot.curves}
         key = [words for kind, words in KEY.items() if kind in kinds]
         return self._gui.add_uplot(
@@ -78,7 +79,7 @@ class Charts:
                 "y": False,
                 "points": {"size": 5},
             },
-            height=self._height,
+            height=self._height + (AXIS_NAME if with_axis else 0),
             padding=PADDING,
         )
 

@@ -135,7 +135,7 @@ def _fail(message: str, status: int = BAD_INPUT) -> NoReturn:
 
 def _configuration(source: str, changes: list[str] | None) -> Config:
     """The configuration with the values of --set; leaves with all faults printed when there are any."""
-    from model.config import ConfigError, load_config, parse_value
+    from model.config import ConfigError, load_config, parse_value, read_profile
     from model.parameters import PARAMETER
 
     faults, values = [], {}
@@ -150,6 +150,8 @@ def _configuration(source: str, changes: list[str] | None) -> Config:
         except ConfigError as error:
             faults.append(f"--set {change}: {error}")
     try:
+        if values.get("road.file") and "road.points" not in values:
+            values |= read_profile(values["road.file"])
         config = load_config(source).replace(values)
     except ConfigError as error:
         faults.append(str(error))
@@ -227,6 +229,8 @@ def _figure_table(trajectory: Trajectory, figures: Summary) -> Table:
     for what, value in (
         ("Vertical acceleration of the hull, rms", f"{figures.acceleration_rms:.4g} m/s²"),
         ("Vertical acceleration of the hull, peak", f"{figures.acceleration_peak:.4g} m/s²"),
+        ("Weighted acceleration at the seat", f"{figures.seat.total:.4g} m/s², {figures.seat.reaction}"),
+        ("Absorbed power at the seat", f"{figures.seat.absorbed_power:.3g} W"),
         ("Mean share of imaginary wheels in the load", f"{100 * figures.imaginary_share:.1f} %"),
         ("Constraint drift, largest", f"{1e6 * figures.drift:.3g} µm"),
         ("Steps (rejected)", f"{work.steps} ({work.rejected_steps})"),

@@ -5,9 +5,13 @@ from __future__ import annotations
 import html
 from collections.abc import Sequence
 
-from model.ride import AIR_TIME, LOAD_PEAK, LOAD_RMS, TRAVEL, Row
+from model.ride import AIR_TIME, LOAD_COEFFICIENT, LOAD_PEAK, LOAD_RMS, TRAVEL, Row
 
-PAIRS = ((LOAD_PEAK, AIR_TIME), (LOAD_RMS, TRAVEL))  # figures of each wheel side by side in one table
+PAIRS = (
+    (LOAD_PEAK, AIR_TIME),
+    (LOAD_RMS, TRAVEL),
+    (LOAD_COEFFICIENT,),
+)  # figures of each wheel side by side in one table
 NOTABLE = 0.5  # %: a smaller change is not coloured
 NONE = "–"
 
@@ -18,7 +22,7 @@ def comparison_table(rows: Sequence[Row], compared: bool) -> str:
     wheels = list(dict.fromkeys(row.wheel for row in rows if row.wheel))
     by_place = {(row.figure, row.wheel): row for row in rows}
     heads = ("now", "baseline", "change") if compared else ("now",)
-    tables = [_table(["Whole vehicle", *heads], [[_whole_label(row), *_cells(row, compared)] for row in whole])]
+    tables = [_table(["Whole vehicle", *heads], [[_whole_label(row), *cells(row, compared)] for row in whole])]
     for pair in PAIRS:
         over = "<tr><th></th>" + "".join(
             f'<th colspan="{len(heads)}">{html.escape(f"{figure.label}, {figure.unit}")}</th>' for figure in pair
@@ -26,7 +30,7 @@ def comparison_table(rows: Sequence[Row], compared: bool) -> str:
         lines = [
             [
                 f"<td>{html.escape(wheel)}</td>",
-                *(cell for figure in pair for cell in _cells(by_place.get((figure.label, wheel)), compared)),
+                *(cell for figure in pair for cell in cells(by_place.get((figure.label, wheel)), compared)),
             ]
             for wheel in wheels
         ]
@@ -37,14 +41,15 @@ def comparison_table(rows: Sequence[Row], compared: bool) -> str:
 def _table(heads: Sequence[str], lines: Sequence[Sequence[str]], over: str = "") -> str:
     head = "<tr>" + "".join(f"<th>{html.escape(text)}</th>" for text in heads) + "</tr>"
     body = "".join(f"<tr>{''.join(cells)}</tr>" for cells in lines)
-    return f'<table class="trackride-figures">{over}{head}{body}</table>'
+    kind = "trackride-figures by-wheel" if over else "trackride-figures"
+    return f'<table class="{kind}">{over}{head}{body}</table>'
 
 
 def _whole_label(row: Row) -> str:
     return f"<td>{html.escape(row.figure)}, {html.escape(row.unit)}</td>"
 
 
-def _cells(row: Row | None, compared: bool) -> list[str]:
+def cells(row: Row | None, compared: bool) -> list[str]:
     """Now, baseline and change."""
     value, baseline, change = (None, None, None) if row is None else (row.now, row.baseline, row.change)
     now = f"<td>{figure_text(value)}</td>"

@@ -1,4 +1,4 @@
-"""The panel of parameters, generated from the parameter table: sliders for what-if, boxes in folders for the rest.
+"""Sliders and boxes for single parameters, as the parameter table describes them.
 
 What a box shows is in the table's friendlier unit (`shown_unit`); what a wish holds is as in a file.
 """
@@ -6,14 +6,15 @@ What a box shows is in the table's friendlier unit (`shown_unit`); what a wish h
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Mapping
 from typing import Any, Protocol
 
+import numpy as np
 import viser
 
 from app.callbacks import by_user
 from model.config import Config
-from model.parameters import GROUPS, NOTES, PARAMETER, PARAMETERS, Parameter, number_text
+from model.parameters import PARAMETER, Parameter, number_text
+from model.points import points
 from model.validation import Fault
 
 PRECISION = 4  # decimals that a box takes and shows
@@ -35,6 +36,12 @@ class Wishes(Protocol):
     def undo(self) -> None: ...
 
     def redo(self) -> None: ...
+
+    def upload_profile(self, name: str, content: bytes) -> None: ...
+
+    def add_to_road(self, road_type: str) -> None: ...
+
+    def take_from_road(self) -> None: ...
 
     def fail(self, error: Exception) -> None: ...
 
@@ -66,6 +73,8 @@ def allowed(parameter: Parameter) -> str:
     """Range and unit as shown: "0.5 to 100 km/h"."""
     if parameter.kind == "choice":
         return "one of " + ", ".join(map(choice_words, parameter.choices))
+    if parameter.kind in ("points", "parts"):
+        return parameter.allowed
     low, high = (number_text(shown_number(parameter, bound)) for bound in (parameter.low, parameter.high))
     return f"{low} to {high} {parameter.shown_unit}".strip()
 
@@ -82,9 +91,16 @@ def file_number(parameter: Parameter, shown: float) -> float | int:
 
 
 def shown_text(parameter: Parameter, value: Any) -> str:
-    """A value, a list of values or nothing as text in the shown unit."""
+    """A value, a list of values or nothing as text in the shown unit; of a profile and of a sum, what they hold."""
     if value is None:
         return ""
+    if parameter.kind == "points":
+        x, y = points(value)
+        return f"{len(x)} points, {x[-1] - x[0]:.4g} m long, {np.ptp(y):.3g} m high"
+    if parameter.kind == "parts":
+        return " + ".join(choice_words(road.type) for road in value) or "none"
+    if isinstance(value, str):
+        return value
     if isinstance(value, tuple):
         return ", ".join(number_text(shown_number(parameter, number)) for number in value)
     return number_text(shown_number(parameter, value))
@@ -134,18 +150,11 @@ class Control:
             self._one = gui.add_checkbox(label, value, hint=help_text)
         else:
             first = shown_number(parameter, value[0] if isinstance(value, tuple) else value)
-            step = shown_number(parameter, parameter.step)
             if parameter.what_if:
-                low, high = (shown_number(parameter, x) for x in (parameter.slider_low, parameter.slider_high))
-                self._one = gui.add_slider(
-                    label,
-                    float(min(low, first)),
-                    float(max(high, first)),
-                    float(step),
-                    float(first),
-                    hint=help_text,
-                )
+                low, high, step = self._range(first)
+                self._one = gui.add_slider(label, min(low, first), max(high, first), step, first, hint=help_text)
             else:
+                step = shown_number(parameter, parameter.step)
                 self._one = gui.add_number(label, float(first), step=float(step), hint=help_text)
             self._one.precision = max(PRECISION, _decimals(first))
         self._one.on_update(by_user(lambda event: wishes.change(parameter.key, self.value), wishes.fail))
@@ -194,8 +203,15 @@ class Control:
         else:
             shown = shown_number(self.parameter, value)
             self._one.precision = max(PRECISION, _decimals(shown))
+            if self.parameter.what_if and not self._one.min <= shown <= self._one.max:
+                self._one.min, self._one.max, self._one.step = self._range(shown)
             self.widen(value)
             self._one.value = shown
+
+    def _range(self, shown: float) -> tuple[float, float, float]:
+        """Ends and step of the slider for a value, as shown."""
+        low, high, step = self.parameter.slider(file_number(self.parameter, shown))
+        return tuple(float(shown_number(self.parameter, bound)) for bound in (low, high, step))  # type: ignore[return-value]
 
     def widen(self, value: Any) -> None:
         """Give the slider a range that has this value."""
@@ -219,89 +235,13 @@ class Control:
             self._one.disabled = not applies
 
 
-class ControlPanel:
-    """All controls of one browser tab, in the present container of `gui`."""
-
-    def __init__(
-        self, gui: viser.GuiApi, presets: Mapping[str, Config], preset: str, config: Config, wishes: Wishes
-    ) -> None:
-        """presets: name -> configuration; `preset` is shown as the chosen one, `config` in the controls."""
-        self._titles = _unique_titles(presets)
-        self._preset: Any = gui.add_dropdown(
-            "Preset",
-            tuple(self._titles.values()),
-            initial_value=self._titles[preset],
-            hint="A vehicle on a road to start from; all parameters follow",
-        )
-        self._preset.on_update(by_user(lambda event: wishes.load(self._named(event.target.value)), wishes.fail))
-        self.status = gui.add_html("")
-        self._controls: dict[str, Control] = {}
-        for parameter in PARAMETERS:
-            if parameter.what_if:
-                self._controls[parameter.key] = Control(gui, parameter, _value(config, parameter), wishes)
-        steps = gui.add_button_group(
-            "Parameters",
-            ("Undo", "Redo", "Reset"),
-            hint="Undo the last change (Ctrl+Z), redo it (Ctrl+Shift+Z), or all parameters as in the preset (R)",
-        )
-        acts = {"Undo": wishes.undo, "Redo": wishes.redo, "Reset": wishes.reset}
-        steps.on_click(by_user(lambda event: acts[event.target.value](), wishes.fail))
-        self.middle = gui.add_folder(None)  # for other controls, between the sliders and the folders
-        for group in GROUPS:
-            rest = [parameter for parameter in PARAMETERS if parameter.group == group and not parameter.what_if]
-            if group == NOTES or not rest:
-                continue
-            with gui.add_folder(group, expand_by_default=False):
-                for parameter in rest:
-                    self._controls[parameter.key] = Control(gui, parameter, _value(config, parameter), wishes)
-        self.show(config)
-
-    def offer(self, presets: Mapping[str, Config], chosen: str) -> None:
-        """Offer these presets, `chosen` as the one that is used."""
-        titles = _unique_titles(presets)
-        if titles != self._titles:
-            self._titles = titles
-            self._preset.options = tuple(titles.values())
-        if self._preset.value != titles[chosen]:
-            self._preset.value = titles[chosen]
-
-    def _named(self, title: str) -> str:
-        """The name of the preset with this title. Raises KeyError."""
-        names = {title: name for name, title in self._titles.items()}
-        return names[title]
-
-    def __getitem__(self, key: str) -> Control:
-        return self._controls[key]
-
-    def show(self, config: Config, touched: Collection[str] = ()) -> None:
-        """Say what the configuration says, but leave controls alone that the user has touched and may still move."""
-        with_track = config.vehicle.imaginary_wheels.enabled
-        for key, control in self._controls.items():
-            applies = control.parameter.applies_to(config.road.type)
-            control.describe(config.parameter(key))
-            if applies:
-                (control.widen if key in touched else control.show)(config.value(key))
-            control.enable(applies and (with_track or not key.startswith(IMAGINARY) or key == IMAGINARY_SWITCH))
-
-
-def _value(config: Config, parameter: Parameter) -> Any:
-    return config.value(parameter.key) if parameter.applies_to(config.road.type) else parameter.default
-
-
-def _unique_titles(presets: Mapping[str, Config]) -> dict[str, str]:
-    """Preset's name -> its title, with the name where two have the same title."""
-    titles = [config.name for config in presets.values()]
-    return {
-        name: config.name if titles.count(config.name) == 1 else f"{config.name} ({name})"
-        for name, config in presets.items()
-    }
-
-
 def refusal(fault: Fault, given: Any, config: Config) -> str:
     """A fault in the words of the panel, and in the units that the configuration gives it."""
     if fault.path not in PARAMETER:
         return f"{fault}."
     parameter = config.parameter(fault.path)
+    if parameter.kind in ("points", "parts"):
+        return f"{parameter.label}: {fault.message}."
     if not isinstance(given, int | float) or not math.isfinite(given):
         return f"{parameter.label}: {fault.value} is not allowed. Give {allowed(parameter)}."
     if parameter.low <= given <= parameter.high:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Protocol
+from typing import Any, Protocol
 
 from app.history import REST, Changes, Kept, Runs, first_wish, run_name, same
 from app.memory import PRESETS, State, state_text
@@ -231,6 +231,20 @@ class Desk:
         """Wish for a configuration from outside: for changes to the present preset if it has that one's name."""
         base = self._runner.latest.base
         self._wish(first_wish(base, config) if config.name == base.name else Wish(config))
+
+    def change_road(self, changes_of: Callable[[Config], dict[str, Any]]) -> None:
+        """Wish for changes to the road of the latest wish (dotted key -> value), if that is a possible one."""
+
+        def changed(wish: Wish) -> Wish:
+            try:
+                changes = changes_of(wish.config())
+            except ConfigError:  # it will be refused
+                return wish
+            for key, value in changes.items():
+                wish = wish.changed(key, value)
+            return Wish(wish.base, wish.changes)
+
+        self._runner.change(changed)
 
     def save_preset(self, name: str) -> None:
         """Make a preset of the configuration that is shown."""

@@ -25,7 +25,6 @@ PLOTTED = 10.0  # s simulated that the plots show
 PLOT_EVERY = 0.1  # s of real time between two pasts for the plots
 ALIGNED = 40  # samples: the plotted past begins at a multiple of these, so that thinned curves do not flicker
 AT_HAND = 0.1  # s simulated that the 3-D view gets
-ROAD_EVERY = 0.3  # s of real time between two road shapes while a slider of the road is dragged
 MEASURED = 1.0  # s of real time over which the real-time factor is measured
 
 
@@ -72,9 +71,16 @@ class DriveState:
     factor: float | None  # times real time that was reached
     ended: str  # why it came to an end, in words; empty while it goes on
     advice: str  # what to try then
-    recent: Trajectory  # the last moments, up to `time` at least
+    recent: Trajectory  # the last moments, up to `time` at least; of a drive that stands, `past`
     past: Trajectory  # the last PLOTTED seconds, the same object until there is a newer one
-    road: Road  # about the vehicle, in the frame of `recent`
+    road: Road  # under `recent` and about it, in its frame
+    origin: float  # m from where the drive started to x = 0 of that frame
+    stands: bool  # until it drives on, one can look back
+
+    @property
+    def past_from_start(self) -> Trajectory:
+        """`past`, its x measured from where the drive started."""
+        return replace(self.past, q=self.past.q + np.array([self.origin, 0.0, 0.0]))
 
 
 class Driver:
@@ -85,7 +91,6 @@ class Driver:
         self._clock = clock
         self._drive = LiveDrive(config, PLOTTED + ALIGNED / config.simulation.output_rate)
         self._wished = config
-        self._road_since = -np.inf
         self._start()
 
     def _start(self) -> None:
@@ -101,15 +106,18 @@ class Driver:
         """Drive on with another configuration from the next frame on."""
         self._wished = config
 
-    def stand(self) -> None:
+    def stand(self) -> DriveState:
         """Real time passes without driving from here on, until the next frame."""
+        self._take_over()
         self._before = None
         self._pace.rest()
+        self._past, self._plotted_at = aligned(self._drive.recent()), -np.inf
+        return self._state(self._past, self._drive.road_under(self._past), stands=True)
 
     def frame(self, speed: float) -> DriveState:
         """Drive on by the real time that has passed, times speed, or as far as BUDGET allows."""
         began = self._clock()
-        self._take_over(began)
+        self._take_over()
         drive, pace = self._drive, self._pace
         if speed != self._speed:
             pace.rest()
@@ -123,34 +131,33 @@ class Driver:
                 break
         now = self._clock()
         pace.reached(now, drive.time)
-        recent = drive.recent(AT_HAND)
-        x = drive.distance + float(recent.q[-1, 0, 0])
-        if self._distance_from is None:
-            self._distance_from = x
         if self._past is None or now - self._plotted_at >= PLOT_EVERY or drive.status is not Status.RUNNING:
             self._past, self._plotted_at = aligned(drive.recent()), now
+        return self._state(drive.recent(AT_HAND), drive.road())
+
+    def _state(self, recent: Trajectory, road: Road, *, stands: bool = False) -> DriveState:
+        drive = self._drive
+        assert self._past is not None
+        x = drive.distance + float(recent.q[-1, recent.system.chassis, 0])
+        if self._distance_from is None:
+            self._distance_from = x
         return DriveState(
             config=drive.config,
-            time=pace.target,
+            time=self._pace.target,
             distance=x - self._distance_from,
-            factor=pace.factor,
+            factor=self._pace.factor,
             ended="" if drive.status is Status.RUNNING else recent.status,
             advice=recent.advice,
             recent=recent,
             past=self._past,
-            road=drive.road(),
+            road=road,
+            origin=drive.distance,
+            stands=stands,
         )
 
-    def _take_over(self, now: float) -> None:
-        """Give the drive what is wished, but another road shape not too often: each costs time to lay."""
-        if self._wished == self._drive.config:
-            return
-        other_road = self._wished.road != self._drive.config.road
-        if other_road and now - self._road_since < ROAD_EVERY:
-            return
-        if other_road:
-            self._road_since = now
-        if not self._drive.change(self._wished):
+    def _take_over(self) -> None:
+        """Give the drive what is wished."""
+        if self._wished != self._drive.config and not self._drive.change(self._wished):
             self._start()
 
 

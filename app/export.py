@@ -119,7 +119,7 @@ def file_name(config: Config, title: str, changes: Mapping[str, Any], detail: st
     parts = [_plain(title) or "run"]
     for key, value in changes.items():
         parameter = config.parameter(key)
-        text = shown_text(parameter, value) if isinstance(value, int | float | tuple) else str(value)
+        text = str(value) if value is None or parameter.kind == "choice" else shown_text(parameter, value)
         parts.append(_plain(f"{parameter.label} {text} {parameter.shown_unit}"))
     end = f"_{_plain(detail)}" if detail else ""
     return "_".join(part for part in parts if part)[: NAME_LIMIT - len(end)].rstrip("-_.") + end + suffix

@@ -9,7 +9,7 @@ from app.controls import choice_words, shown_text
 from app.figure_page import BAND, GREY, MARKED, Page, plain
 from model.config import Config
 from model.parameters import NOTES, PARAMETER, Parameter
-from model.ride import WHEEL_FIGURES, Row
+from model.ride import AIR_TIME, LOAD_PEAK, LOAD_RMS, TRAVEL, Row
 
 ROW = 0.142  # inches, like all lengths: height of a row, at most
 LEAST_ROW = 0.125  # below which wheels are left out of the tables instead
@@ -18,6 +18,7 @@ POINTS_PER_ROW = 48.0  # size of text for each inch of a row's height
 HEAD, SUBHEAD = 7.6, 6.1  # points
 NAMES = 0.3  # width of the wheels' names
 MOST = 999.0  # %: a larger change is not told in figures
+WHEEL_FIGURES = (LOAD_PEAK, LOAD_RMS, TRAVEL, AIR_TIME)  # for which there is room
 GAP = 0.2  # between the two columns of parameters
 
 
@@ -169,6 +170,6 @@ def _valued(parameter: Parameter, value: Any) -> str:
     """A value with its unit, as people read it."""
     if isinstance(value, bool):
         return "yes" if value else "no"
-    if isinstance(value, str):
+    if parameter.kind == "choice":
         return choice_words(value)
     return f"{shown_text(parameter, value)} {parameter.shown_unit}".strip()

@@ -221,4 +221,4 @@ def _words(parameter: Parameter, value: Any) -> str:
         return "automatic"
     if isinstance(value, bool):
         return "on" if value else "off"
-    return choice_words(value) if isinstance(value, str) else shown_text(parameter, value)
+    return choice_words(value) if parameter.kind == "choice" else shown_text(parameter, value)

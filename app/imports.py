@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from io import BytesIO
+from typing import Any
 from zipfile import BadZipFile, ZipFile
 
 from model.config import SIZE_LIMIT, Config, ConfigError, Fault, parse_config
+from model.points import PointsError, read_csv
+from model.road import RAMP_AHEAD
 from model.trajectory import Trajectory
 
 RUN_LIMIT = 100e6  # bytes of a run's file…
@@ -20,6 +23,24 @@ def configuration(name: str, content: bytes) -> Config:
         return parse_config(content.decode("utf-8-sig"), source=name)
     except UnicodeDecodeError:
         raise ConfigError([Fault("", "", "the file is not UTF-8 text")], name) from None
+
+
+def profile_changes(name: str, content: bytes, config: Config) -> dict[str, Any]:
+    """Changes (dotted key -> value) that make a CSV file's profile the road. Raises ConfigError with all faults.
+
+    A profile that is not level under the vehicle is put ahead of it.
+    """
+    try:
+        points = read_csv(content)
+    except PointsError as error:
+        raise ConfigError([Fault("", "", str(error))], name) from None
+    changes: dict[str, Any] = {"road.type": "profile", "road.file": name, "road.points": points}
+    try:
+        config.replace(changes)
+    except ConfigError:
+        changes["road.start"] = round(config.vehicle.road_wheels.x[0] + RAMP_AHEAD, 6)
+        config.replace(changes)
+    return changes
 
 
 def run_from(name: str, content: bytes) -> Trajectory:

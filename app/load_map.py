@@ -14,12 +14,12 @@ from app.markup import page
 from app.plots import at_times
 from model.trajectory import Trajectory, wheel_names
 
-COLUMNS = 600  # of the picture at most: about as many as it has pixels on the page
+COLUMNS = 600, 4000  # of a picture at most: about as many as it has pixels on the page, and to be looked at near by
 TICKS = 5  # of an axis, at least; twice as many at most
 LEAST_TOP = 1e-3  # kN, of a colour bar
 READING = (
     "Front wheel on top; empty where a wheel is in the air. Bands that slant down to the right pass from the front "
-    "wheel to the rear one."
+    "wheel to the rear one. Drag to zoom in, double-click to see all."
 )
 
 
@@ -27,7 +27,7 @@ def load_map(run: Trajectory, baseline: Trajectory | None = None) -> str:
     """HTML of the normal loads of road wheels and of imaginary wheels over time, front wheel on top.
 
     Where a wheel is in the air the map is empty. A picture's column shows the largest load in its stretch of time. A
-    baseline has maps of its own below the run's, in the same colours.
+    baseline has maps of its own below the run's, in the same colours. The page draws the axis of time, for it zooms.
     """
     if not len(run.t):
         return page("<p>This run has no samples.</p>")
@@ -42,26 +42,29 @@ def load_map(run: Trajectory, baseline: Trajectory | None = None) -> str:
                 load = at_times(run.t, of.t, of.normal_load[:, wheels] / 1e3)
                 shown.append((f"Normal load of {family} wheels, kN{whose}", load, [names[w] for w in wheels]))
         top = max((np.nanmax(load, initial=LEAST_TOP) for _, load, _ in shown), default=LEAST_TOP)
-        maps += [_map(title, run.t, load, names, float(top), 1 / len(runs)) for title, load, names in shown]
-    return page(f"{''.join(maps)}<p>{READING}</p>")
-
-
-def _map(title: str, t: np.ndarray, load: np.ndarray, names: list[str], top: float, height: float) -> str:
-    """load: (N, K) kN, a column for each name, NaN for unknown; top: of the colours, kN; height: 1 is the usual."""
-    start, span = float(t[0]), max(float(t[-1] - t[0]), 1e-9)
-    times = "".join(
-        f'<span style="left:{100 * (tick - start) / span:.3f}%">{tick:g}</span>' for tick in ticks(start, start + span)
+        maps += [(title, load, names, float(top)) for title, load, names in shown]
+    rows = sum(len(names) for _, _, names, _ in maps)
+    sections = "".join(_map(title, load, names, top, len(names) / rows) for title, load, names, top in maps)
+    start, span = float(run.t[0]), max(float(run.t[-1] - run.t[0]), 1e-9)
+    return page(
+        f'<trackride-map start="{start}" span="{span}" style="--maps:{len(maps)}">{sections}</trackride-map>'
+        f"<p>{READING}</p>"
     )
+
+
+def _map(title: str, load: np.ndarray, names: list[str], top: float, share: float) -> str:
+    """load: (N, K) kN, a column for each name, NaN for unknown; top: of the colours, kN; share: of the height."""
+    far, near = (_picture(load, top, columns) for columns in COLUMNS)
     loads = "".join(
-        f'<span style="bottom:{100 * tick / top:.3f}%">{tick:g}</span>' for tick in ticks(0.0, top, TICKS * height)
+        f'<span style="bottom:{100 * tick / top:.3f}%">{tick:g}</span>' for tick in ticks(0.0, top, 2 * TICKS * share)
     )
     return (
-        f'<section class="trackride-map" style="--wheels:{len(names)};--height:{height:g}"><h4>{title}</h4>'
+        f'<section class="trackride-map" style="--wheels:{len(names)};--share:{share:.4f}"><h4>{title}</h4>'
         f'<div class="names">{"".join(f"<span>{name}</span>" for name in names)}</div>'
-        f'<div class="field"><img alt="{title}" src="{_picture(load, top)}">'
-        f'<i style="left:calc(100% * (var(--trackride-now, -1) - {start:g}) / {span:g})"></i></div>'
+        f'<div class="field"><img class="far" alt="{title}" src="{far}"><img class="near" alt="" src="{near}">'
+        f"<i></i><b></b></div>"
         f'<div class="bar" style="background:linear-gradient(to top, {", ".join(RAMP)})">{loads}</div>'
-        f'<div class="times">{times}</div><div class="axis">Time, s</div></section>'
+        f'<div class="times"></div><div class="axis">Time, s</div></section>'
     )
 
 
@@ -74,9 +77,9 @@ def ticks(low: float, high: float, least: float = TICKS) -> list[float]:
     return [float(round(k * step, 9)) + 0.0 for k in np.arange(first, last + 1)]
 
 
-def _picture(load: np.ndarray, top: float) -> str:
-    """The map as the address of a PNG picture, a pixel for each wheel and stretch of time."""
-    edges = np.linspace(0, len(load), min(len(load), COLUMNS) + 1).round().astype(int)
+def _picture(load: np.ndarray, top: float, columns: int) -> str:
+    """The map as the address of a PNG picture, a pixel for each wheel and each of at most `columns` times."""
+    edges = np.linspace(0, len(load), min(len(load), columns) + 1).round().astype(int)
     highest = np.array([load[i:k].max(axis=0) for i, k in pairwise(edges)]).T  # (K, columns)
     pixels = load_colours(np.nan_to_num(highest) / top)
     pixels[~(highest > 0), 3] = 0

@@ -6,8 +6,9 @@ import numpy as np
 import viser
 
 from app.colours import Palette, Theme, rgb
+from app.labels import BELOW
 from app.load_colours import load_colours
-from app.nodes import LABELS_BELOW, Frame, paint, update
+from app.nodes import Frame, paint, update
 from app.scene import SIDES, Poses, Scene, Snapshot
 from assets.layout import Layout
 from assets.solids import lathe, light
@@ -71,9 +72,8 @@ class Marks:
         api.add_label(
             "/marks/scale_bar/name",
             "1 m",
-            position=(float(middle[0]), float(middle[1]), float(middle[2]) - 0.1 * s),
-            font_screen_scale=1.0,
-            anchor="center-center",
+            position=(float(middle[0]), float(middle[1]), float(middle[2]) - 0.04 * s),
+            anchor="top-center",
         )
         self.show()
 
@@ -126,7 +126,7 @@ class Marks:
         if shown["grid"]:
             self._grid_frame.move(x - (now.x + scene.passed) % 1.0)
         if shown["scale_bar"]:
-            self._scale_frame.move(x, scene.lowest - LABELS_BELOW)
+            self._scale_frame.move(x, scene.lowest - BELOW)
 
     def remove(self) -> None:
         self._node.remove()
@@ -195,7 +195,7 @@ def travel_bars(scene: Scene, now: Snapshot) -> np.ndarray:
 def scale_bar(layout: Layout) -> np.ndarray:
     """(3, 2, 3) one metre with its ends, under the rear of the vehicle."""
     s = layout.scale
-    a = np.array([layout.idler.x - 0.4 * s, -layout.road_half_width - 0.02 * s, -0.1 * s])
+    a = np.array([layout.idler.x - 0.6 * s, -layout.road_half_width - 0.02 * s, -0.1 * s])
     b, up = a + np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 0.06 * s])
     return np.array([[a, b], [a - up, a + up], [b - up, b + up]], dtype=np.float32)
 

@@ -16,12 +16,11 @@ from assets.hull import hull
 from assets.layout import Layout
 from assets.solids import Part, glb, joined, light
 from assets.surroundings import RoadStrip, ground, shadow_faces, sky
-from model.road import Road
+from model.road import Profile
 
 VEHICLE = "/vehicle"  # the node above all of the vehicle's
 GROUND_BELOW = 0.55  # m from the lowest point of the road down to the ground around it
-LABELS_BELOW = 0.12  # m from the lowest point of the road down to the upper row of wheel names
-GRAIN = 1 / 256  # m to which the road's vertices are rounded: nobody sees it, and replays are a third smaller
+ROUNDING = 1 / 256  # m to which the road's vertices are rounded: nobody sees it, and replays are a third smaller
 GLOW = 1.5  # of sky and ground: evens out the renderer's tone mapping, which darkens white
 
 
@@ -50,7 +49,7 @@ class Frame:
 
 
 class VehicleNodes:
-    """A vehicle with its load arrows and its wheels' names."""
+    """A vehicle with its load arrows."""
 
     def __init__(self, api: viser.SceneApi, scene: Scene, now: Snapshot) -> None:
         layout, system = scene.layout, scene.system
@@ -87,7 +86,6 @@ class VehicleNodes:
             head_radius=0.055 * s,
             head_length=0.10 * s,
         )
-        self._labels = _labels(api, layout)
 
     def colour(self, palette: Palette) -> None:
         """Give arms and arrows their wheels' colours."""
@@ -98,7 +96,6 @@ class VehicleNodes:
 
     def draw(self, scene: Scene, now: Snapshot) -> None:
         """Bring everything that is visible to where it is now."""
-        self._labels.move(now.x - now.origin, scene.lowest - LABELS_BELOW)
         for name, node in self._batches.items():
             if node.visible:
                 poses: Poses = getattr(now, name)
@@ -107,10 +104,9 @@ class VehicleNodes:
         if self._arrows.visible:
             update(self._arrows, points=now.arrows)
 
-    def show(self, *, hull: bool, arrows: bool, labels: bool) -> None:
+    def show(self, *, hull: bool, arrows: bool) -> None:
         self._batches["hull"].visible = hull
         self._arrows.visible = arrows
-        self._labels.node.visible = labels
 
     def on_click(self, act: Callable[[int], None]) -> None:
         """Call act(wheel), which must not block, when the user clicks a wheel; counted as in a run's arrays."""
@@ -158,7 +154,7 @@ class RoadNodes:
     def __init__(self, api: viser.SceneApi, layout: Layout) -> None:
         reach = (layout.front - layout.rear) / 2 + 1.8 * layout.scale
         self._strip = RoadStrip(reach, layout.road_half_width)
-        self._shown: tuple[Road, float, float] | None = None  # the road, where the strip stands, its foot
+        self._shown: tuple[Profile, float, float] | None = None  # of the road; where the strip stands, its foot
         self._meshes: list[np.ndarray] = []
         self._shift = 0.0
         self._tiles = [
@@ -174,7 +170,7 @@ class RoadNodes:
         """Show the road around the vehicle; nothing is sent while it looks the same."""
         start, foot = self._strip.start(now.x), scene.lowest - GROUND_BELOW
         shift = start - now.origin
-        road = scene.ground.road
+        road = scene.ground.road.profile
         if self._shown is None or self._shown[0] is not road or self._shown[1:] != (start, foot):
             self._shown = road, start, foot
             self._meshes = self._strip.vertices(start, scene.ground.height, foot)
@@ -183,7 +179,7 @@ class RoadNodes:
         self._shift = shift
         along = np.array([shift, 0.0, 0.0], dtype=np.float32)
         for tiles, vertices in zip(self._tiles, self._meshes, strict=True):
-            update(tiles, vertices=np.round((vertices + along) / GRAIN) * GRAIN)
+            update(tiles, vertices=np.round((vertices + along) / ROUNDING) * ROUNDING)
 
     def remove(self) -> None:
         for tiles in self._tiles:
@@ -222,23 +218,6 @@ class Surroundings:
 
     def _glowing(self, name: str, mesh: Part) -> None:
         self._api.add_glb(name, glb([mesh], glow=GLOW), cast_shadow=False, receive_shadow=False)
-
-
-def _labels(api: viser.SceneApi, layout: Layout) -> Frame:
-    """R1… and below them I1…, under the arrows of the right side."""
-    name = f"{VEHICLE}/labels"
-    frame = Frame(api, name)
-    between = (np.array(layout.wheel_x)[: len(layout.links)] - layout.links).tolist()
-    for letter, xs, row in (("R", layout.wheel_x, 0.0), ("I", between, 0.2 * layout.scale)):
-        for number, x in enumerate(xs, start=1):
-            api.add_label(
-                f"{name}/{letter}{number}",
-                f"{letter}{number}",
-                position=(x, -layout.arrow, -row),
-                font_screen_scale=1.0,
-                anchor="center-center",
-            )
-    return frame
 
 
 def _on_both_sides(colours: tuple[str, ...]) -> np.ndarray:

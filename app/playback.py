@@ -1,4 +1,4 @@
-"""Where in the run we are: a clock that plays, pauses, steps and starts again at the end."""
+"""Where in a run, or in the past of a drive, we are: a clock that plays, pauses, steps, starts again at the end."""
 
 from __future__ import annotations
 
@@ -11,22 +11,23 @@ STEP = 0.01  # s
 
 @dataclass
 class Playback:
-    """Time in a run of `duration`, both in s; `speed` 1 is real time."""
+    """Time in a run from `start` to `end`, all in s; `speed` 1 is real time."""
 
-    duration: float = 0.0
+    end: float = 0.0
     time: float = 0.0
+    start: float = 0.0
     speed: float = SPEEDS[NORMAL_SPEED]
     playing: bool = True
 
     def advance(self, elapsed: float) -> None:
         """Let `elapsed` seconds of real time pass; the end of the run leads back to its start."""
-        if self.playing and self.duration > 0:
-            self.time = (self.time + elapsed * self.speed) % self.duration
+        if self.playing and self.end > self.start:
+            self.time = self.start + (self.time - self.start + elapsed * self.speed) % (self.end - self.start)
 
     def scrub(self, time: float) -> None:
         """Go to a time and stay there. Times outside the run, or no number, lead to its nearest end."""
         self.playing = False
-        self.time = min(max(time, 0.0), self.duration) if time == time else 0.0
+        self.time = min(max(time, self.start), self.end) if time == time else self.start
 
     def step(self, steps: int) -> None:
         """Go some steps on, or back when negative, and stay there."""
@@ -35,10 +36,16 @@ class Playback:
     def toggle(self) -> None:
         """Play, or pause. At the very end, play starts again from the beginning."""
         self.playing = not self.playing
-        if self.playing and self.time >= self.duration:
-            self.time = 0.0
+        if self.playing and self.time >= self.end:
+            self.time = self.start
 
     def fit(self, duration: float) -> None:
         """A new run of this duration: go on at the same time as far as it has one."""
-        self.duration = duration
+        self.start, self.end = 0.0, duration
         self.time = min(self.time, duration)
+
+    def look_back(self, start: float, end: float) -> None:
+        """The past of a drive up to its present: stay there, or where the user has gone back to, if that is left."""
+        at_present = self.playing or self.time >= self.end
+        self.start, self.end = start, end
+        self.time = end if at_present else min(max(self.time, start), end)

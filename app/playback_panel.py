@@ -1,4 +1,4 @@
-"""The player at the foot of the 3-D view: run or drive, time slider, buttons, speed."""
+"""The player at the foot of the 3-D view: run or drive, time slider or how far the drive has come, buttons, speed."""
 
 from __future__ import annotations
 
@@ -46,9 +46,12 @@ class PlaybackPanel:
                 "Mode",
                 _modes(False),
                 hint="Run: a stretch of road, computed anew at each change. Drive: on and on in real time; changes act "
-                "on the moving vehicle (key D).",
+                "on the moving vehicle; an obstacle comes again and again, and is put ahead of the vehicle when it is "
+                "changed (key D).",
             )
-            self._time: Any = gui.add_slider("Time, s", 0.0, 1.0, STEP, 0.0, hint="Where in the run we are")
+            self._time: Any = gui.add_slider(
+                "Time, s", 0.0, 1.0, STEP, 0.0, hint="Where in the run, or in the last seconds of the drive, we are"
+            )
             self._driven: Any = gui.add_text(
                 "Driven",
                 "",
@@ -60,7 +63,8 @@ class PlaybackPanel:
             self._buttons: Any = gui.add_button_group(
                 "Playback",
                 _buttons(False, True),
-                hint="Space plays and pauses; ← and → step by 0.01 s, with Shift by 0.1 s",
+                hint="Space plays and pauses; ← and → step by 0.01 s, with Shift by 0.1 s. A drive that pauses can be "
+                "looked back on for its last seconds.",
             )
             speed = gui.add_dropdown(
                 "Time scale",
@@ -87,17 +91,26 @@ class PlaybackPanel:
     def show(self, playback: Playback) -> None:
         """Say what the playback of a run does."""
         self._show_mode(False, playback.playing)
-        self._time.max = max(playback.duration, STEP)
-        self._time.value = round(playback.time, 2)
+        self._show_time(playback)
 
     def show_drive(self, playback: Playback, state: DriveState | None) -> None:
-        """Say how far the drive has come."""
+        """Say how far the drive has come, or where in its past the user is."""
         self._show_mode(True, playback.playing)
         self._driven.value = "starting…" if state is None else driven_text(state, playback)
+        if state is not None and state.stands:
+            self._show_time(playback)
+
+    def _show_time(self, playback: Playback) -> None:
+        start, slider = round(playback.start, 2), self._time
+        end = max(round(playback.end, 2), start + STEP)
+        slider.min, slider.max = min(slider.min, start), max(slider.max, end)
+        slider.value = min(max(round(playback.time, 2), start), end)  # never outside: the page would move it back
+        slider.min, slider.max = start, end
 
     def _show_mode(self, driving: bool, playing: bool) -> None:
         self._mode.options = _modes(driving)
-        self._time.visible, self._driven.visible = not driving, driving
+        goes_on = driving and playing
+        self._time.visible, self._driven.visible = not goes_on, goes_on
         self._buttons.options = _buttons(driving, playing)
 
 
@@ -108,15 +121,11 @@ def driven_text(state: DriveState, playback: Playback) -> str:
     asked = f"{playback.speed:g}× real time"
     if state.ended:
         return f"{where} · ended"
-    if not playback.playing:
-        return f"{where} · paused"
     return f"{where} · {asked}" if state.factor is None else f"{where} · {state.factor:.2f}× of {asked}"
 
 
 def _buttons(driving: bool, playing: bool) -> tuple[str, ...]:
-    if driving:
-        return ANEW, PAUSE if playing else GO
-    return START, BACK, PAUSE if playing else PLAY, ON
+    return ANEW if driving else START, BACK, PAUSE if playing else GO if driving else PLAY, ON
 
 
 def _modes(driving: bool) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Protocol
@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 import viser
 
+from app.controls import shown_text
+from app.driving import DriveState
 from app.errands import Errands
 from app.export import (
     FIGURE_SIZE,
@@ -23,15 +25,19 @@ from app.export import (
 )
 from app.exports_panel import PICTURE
 from app.history import run_name
-from app.imports import configuration, run_from
+from app.imports import configuration, profile_changes, run_from
 from app.memory import State, state_from
 from app.runner import Simulate, Wish
 from model.config import Config, ConfigError, dump_config
+from model.parameters import PARAMETER
 from model.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from app.desk import Desk
 
+AT_REST = ("figure.png", "figure.svg", "replay", "movie")  # what shows one stretch of a drive and takes a while
+PAUSE_FIRST = "Pause the drive first (Space): what is shown then, its last seconds, is what you take home."
+NO_RUN = "A drive cannot be repeated from a file as a run can. Take CSV, or change from Drive to Run first."
 STORED = "trackride"  # key in the browser's storage
 STORAGE_PATIENCE = 60.0  # s in which a browser says what it has stored; afterwards that is overwritten
 
@@ -80,16 +86,31 @@ class Order:
     dark: bool
     time: float  # where in the run the playback is, s
     playing: bool
+    drive: DriveState | None  # of which `run` is the past
 
     def name(self, detail: str, suffix: str) -> str:
         """Of a file."""
-        return file_name(self.run.config, self.wish.base.name, self.wish.changes, detail, suffix)
+        stretch = f"{detail} {self.stretch}".strip()
+        return file_name(self.run.config, self.wish.base.name, self.wish.changes, stretch, suffix)
 
     @property
     def title(self) -> str:
         """Of a page: what was run, and what was changed."""
         name = run_name(self.wish)
-        return name if name == self.wish.base.name else f"{self.wish.base.name}: {name}"
+        whole = name if name == self.wish.base.name else f"{self.wish.base.name}: {name}"
+        return f"{whole}, {self.stretch}" if self.stretch else whole
+
+    @property
+    def stretch(self) -> str:
+        """Which part of a drive it is; empty for a run."""
+        return "" if self.drive is None else f"drive {self.run.t[0]:.0f}–{self.run.t[-1]:.0f} s"
+
+    @property
+    def refusal(self) -> Mapping[str, str]:
+        """What cannot be made of it, and why."""
+        if self.drive is None:
+            return {}
+        return {"run.npz": NO_RUN} | ({} if self.drive.stands else dict.fromkeys(AT_REST, PAUSE_FIRST))
 
 
 class StoppedError(Exception):
@@ -124,6 +145,9 @@ class Porter:
 
     def send(self, what: str, order: Order) -> None:
         """Make what is asked for, and let the browser download it."""
+        if what in order.refusal:
+            self._front.say("Nothing was downloaded", order.refusal[what])
+            return
         doing, make = self._makers[what]
         self._begin(partial(self._deliver, doing, partial(make, order)))
 
@@ -135,6 +159,10 @@ class Porter:
             self._front.show_faults(f"{name[:60]} cannot be used", error)
         else:
             self._office.ask("configuration", lambda desk: desk.use(config))
+
+    def take_profile(self, name: str, content: bytes) -> None:
+        """Make the road of an uploaded CSV file."""
+        self._begin(partial(self._measure, name, content))
 
     def take_run(self, name: str, content: bytes) -> None:
         """Make the baseline of an uploaded file."""
@@ -203,12 +231,15 @@ class Porter:
         try:
             picture = take_picture(self._client, *FIGURE_SIZE, "white")
         except NoPictureError:
+            if order.drive is not None:
+                raise  # a vehicle drawn from its side would stand on the road of a run
             picture = None
         page = stamped_figure(order.run, order.baseline, picture, order.title, suffix, order.time)
         return order.name("figure", suffix), page
 
     def _run(self, suffix: str, order: Order) -> tuple[str, bytes]:
-        return order.name("", suffix), order.run.to_bytes(suffix)
+        run = order.run if order.drive is None else order.drive.past_from_start
+        return order.name("", suffix), run.to_bytes(suffix)
 
     def _yaml(self, order: Order) -> tuple[str, bytes]:
         return order.name("", ".yaml"), dump_config(order.run.config).encode()
@@ -216,7 +247,10 @@ class Porter:
     def _replay(self, order: Order) -> tuple[str, bytes]:
         from app.replay import replay_html
 
-        page = replay_html(order.run, order.baseline, order.title, order.dark, should_stop=self._errands.stopped)
+        road = None if order.drive is None else order.drive.road
+        page = replay_html(
+            order.run, order.baseline, order.title, order.dark, should_stop=self._errands.stopped, road=road
+        )
         if page is None:
             raise StoppedError("The replay was cancelled.")
         return order.name("replay", ".html"), page.encode()
@@ -224,8 +258,8 @@ class Porter:
     def _movie(self, order: Order) -> tuple[str, bytes]:
         from app.movie import movie
 
-        last = float(order.run.t[-1])
-        start = max(min(order.time, last - MOVIE_LENGTH), 0.0)
+        first, last = float(order.run.t[0]), float(order.run.t[-1])
+        start = max(min(order.time, last - MOVIE_LENGTH), first)
         try:
             film, suffix = movie(self._watched(order.run, start, min(start + MOVIE_LENGTH, last)), MOVIE_RATE)
         finally:
@@ -263,6 +297,19 @@ class Porter:
         finally:
             if not self._memory.stopped():
                 self._office.ask("again", lambda desk: desk.made_again(config, run))
+
+    def _measure(self, name: str, content: bytes) -> None:
+        run = self._office.shown
+        if run is None:
+            return
+        try:
+            changes = profile_changes(name, content, run.config)
+        except ConfigError as error:
+            faults = error
+            self._intend("faults", lambda: self._front.show_faults(f"{name[:60]} cannot be used", faults))
+            return
+        self._office.ask("profile", lambda desk: desk.change_road(lambda config: changes))
+        self._say("Another road", f"{name[:60]}: {shown_text(PARAMETER['road.points'], changes['road.points'])}.")
 
     def _unpack(self, name: str, content: bytes) -> None:
         try:

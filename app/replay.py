@@ -13,6 +13,7 @@ import viser
 
 from app.camera import View
 from app.stage import Stage
+from model.road import Road
 from model.trajectory import Trajectory
 
 RATE = 25.0  # frames a second
@@ -67,17 +68,19 @@ def replay_html(
     dark: bool = False,
     view: View = "three-quarter",
     should_stop: Callable[[], bool] = lambda: False,
+    road: Road | None = None,
 ) -> str | None:
     """A standalone page in which the run plays, can be scrubbed and looked at from all sides.
 
     baseline: another run, which goes along as a ghost. title: plain text, shown above the view and as the page's name.
     A run longer than LONGEST is cut there, and the page says so. Takes a few seconds; not for an event loop. None when
-    `should_stop`, asked before each frame, says so.
+    `should_stop`, asked before each frame, says so. road: under a stretch of a drive, which has no ghost; a run has
+    that of its configuration.
     """
-    duration = float(trajectory.t[-1])
+    duration = float(trajectory.t[-1] - trajectory.t[0])
     if duration > LONGEST:
         title += f" (the first {LONGEST:g} s of {duration:g} s)"
-    page = _record(trajectory, baseline, min(duration, LONGEST), dark, view, should_stop)
+    page = _record(trajectory, baseline, min(duration, LONGEST), dark, view, should_stop, road)
     return page and _titled(page, title, dark)
 
 
@@ -88,13 +91,14 @@ def _record(
     dark: bool,
     view: View,
     should_stop: Callable[[], bool],
+    road: Road | None,
 ) -> str | None:
     with _silence():
         server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
     try:
         page = _Page(server)
         stage = Stage(page, dark)
-        stage.show(trajectory)
+        stage.show(trajectory) if road is None else stage.show_live(trajectory, road)
         stage.show_ghost(baseline)
         stage.set_view(view)
         start, camera = server.initial_camera, page.camera
@@ -104,7 +108,7 @@ def _record(
         for frame in range(int(duration * RATE) + 1):
             if should_stop():
                 return None
-            stage.draw(frame / RATE)
+            stage.draw(float(trajectory.t[0]) + frame / RATE)
             recording.insert_sleep(1 / RATE)
         return recording.as_html(dark_mode=dark)
     finally:

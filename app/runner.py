@@ -235,16 +235,16 @@ class Runner:
         """Frame by frame, until there is to be no drive any more."""
         driver: Driver | None = None
         good = self._wish
-        self._rolls = False
+        self._rolls = stands = False
         while True:
             with self._condition:
-                if driver is not None and not self._has_to_drive():
-                    driver.stand()
-                self._condition.wait_for(self._has_to_drive)
+                if driver is None or stands:
+                    self._condition.wait_for(self._has_to_drive)
                 if self._closed or self._speed is None:
                     return
                 wish, speed = self._wish, self._speed
                 changed, anew = wish.number > self._begun, self._anew
+                goes = speed > 0.0 and (self._rolls or changed or anew)
                 self._begun, self._anew = wish.number, False
             began = monotonic()
             try:
@@ -254,8 +254,8 @@ class Runner:
                         driver = Driver(config)
                     driver.change(config)
                     good = wish
-                state = driver.frame(speed)
-                self._rolls = not state.ended
+                state = driver.frame(speed) if goes else driver.stand()
+                self._rolls, stands = not state.ended, state.stands
                 self._publish(Driven(good, state))
             except ConfigError as error:
                 self._publish(Refused(wish, error.faults))

@@ -9,7 +9,7 @@ follows it stands still. Points of the model's plane are complex, x + iy.
 from __future__ import annotations
 
 import cmath
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
@@ -92,9 +92,9 @@ class GroundLine:
 
     @staticmethod
     def of_laid(road: Road, like: GroundLine | None = None) -> GroundLine:
-        """The whole line of a road that is laid for a stretch only, level beyond; `like`, if it is of this road."""
-        if like is not None and like.road is road:
-            return like
+        """The whole line of a stretch of road, level beyond; taken over from `like`, if it is of the same stretch."""
+        if like is not None and like.road.profile is road.profile:
+            return replace(like, road=road)
         first, last = road.profile.pieces[0].nodes[0], road.profile.pieces[-1].nodes[-1]
         x = np.arange(np.ceil(first / GRAIN), np.floor(last / GRAIN) + 1) * GRAIN
         heights = road.height(x)
@@ -122,7 +122,7 @@ class Scene:
     @cached_property
     def load_scale(self) -> float:
         """m of arrow per N: an even share of the weight on each road wheel is as high as the wheel."""
-        weight = self.system.g * float(self.system.mass.sum())
+        weight = float(self.system.weight.sum())
         return 2 * self.layout.radius * self.system.n / weight
 
     @cached_property
@@ -192,6 +192,10 @@ class Scene:
     def bodies(self, time: float) -> np.ndarray:
         """q (B, 3) of all bodies at a time, s."""
         return self._between(time)[0]
+
+    def loads(self, time: float) -> np.ndarray:
+        """Normal loads (W,), N, at a time, s."""
+        return self._between(time)[1]
 
     def _between(self, time: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """q (B, 3), normal loads (W,) and tractions (W,) at a time."""
@@ -286,8 +290,7 @@ def build_scene(trajectory: Trajectory, like: Scene | None = None) -> Scene:
     if like is None or like.layout != layout:
         ground = GroundLine.along(build_road(config), first, last)
         return Scene(trajectory, system, layout, Places(system, layout), ground)
-    same = like.trajectory.config.road == config.road
-    ground = GroundLine.along(like.ground.road if same else build_road(config), first, last, like.ground)
+    ground = GroundLine.along(build_road(config), first, last, like.ground)
     return Scene(trajectory, system, layout, like.places, ground)
 
 

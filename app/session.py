@@ -21,6 +21,7 @@ from app.desk import Desk
 from app.history import first_wish
 from app.playback import Playback
 from app.porter import Order, Porter
+from app.road_parts import with_part, without_last
 from app.runner import Driven, Failed, Finished, Outcome, Refused, Runner, Simulate, Wish
 from app.stage import Stage
 from app.window import Scene, Window
@@ -119,13 +120,13 @@ class Session:
 
     def step(self, steps: int) -> None:
         with self._lock:
-            if not self._driving:
-                self._playback.step(steps)
+            self._playback.step(steps)
+            self._pace()
 
     def scrub(self, time: float) -> None:
         with self._lock:
-            if not self._driving:
-                self._playback.scrub(time)
+            self._playback.scrub(time)
+            self._pace()
 
     def set_speed(self, speed: float) -> None:
         with self._lock:
@@ -136,6 +137,7 @@ class Session:
         """Drive on and on with the present parameters, or show their run."""
         with self._lock:
             self._driving, self._playback.playing = on, True
+            self._playback.look_back(0.0, 0.0)  # what was shown before has no time in common with what comes
             self._pace()
 
     def toggle_driving(self) -> None:
@@ -165,6 +167,16 @@ class Session:
     def pick_wheel(self, wheel: int | None) -> None:
         self._intend("wheel", lambda: self._window.pick_wheel(wheel))
 
+    def redraw_spectrum(self) -> None:
+        self._intend("spectrum", lambda: self._window.redraw_spectrum())
+
+    def show_mode(self) -> None:
+        """Show what the spectrum's tab says instead of the run, which stands still meanwhile."""
+        with self._lock:
+            if not self._driving:
+                self._playback.playing = False
+        self._intend("mode", lambda: self._window.show_mode())
+
     def set_switch(self, switch: str, on: bool | float) -> None:
         self._intend(switch, lambda: self._window.set_switch(switch, on))
 
@@ -186,6 +198,15 @@ class Session:
 
     def upload_run(self, name: str, content: bytes) -> None:
         self._intend("upload", lambda: self._porter.take_run(name, content))
+
+    def upload_profile(self, name: str, content: bytes) -> None:
+        self._intend("profile", lambda: self._porter.take_profile(name, content))
+
+    def add_to_road(self, road_type: str) -> None:
+        self._intend("road", lambda: self._desk.change_road(lambda config: with_part(config, road_type)))
+
+    def take_from_road(self) -> None:
+        self._intend("road", lambda: self._desk.change_road(without_last))
 
     def edit_yaml(self) -> None:
         self._intend("yaml", self._edit_yaml)
@@ -271,12 +292,15 @@ class Session:
                 self._good = outcome
                 self._window.show_run(outcome, time, settled=self._runner.latest.number == wish.number)
                 self._desk.finished(outcome, monotonic())
-            case Driven(wish):
+            case Driven(wish, state):
                 with self._lock:
                     if self._refused is not None and wish.number > self._refused.wish.number:
                         self._refused = None
+                    if self._driving:
+                        self._playback.look_back(float(state.past.t[0]), state.time)
+                    time = self._playback.time
                 self._good = outcome
-                self._window.show_drive(outcome, settled=self._runner.latest.number == wish.number)
+                self._window.show_drive(outcome, time, settled=self._runner.latest.number == wish.number)
                 self._desk.driven(wish, monotonic())
             case Refused():
                 with self._lock:
@@ -289,7 +313,9 @@ class Session:
             intents, self._intents = self._intents, {}
             steps, self._steps = self._steps, 0
             driving = self._driving
-            if self._in_view and not driving:
+            if driving or not self._in_view:
+                elapsed = 0.0
+            if elapsed:
                 self._playback.advance(elapsed)
             playback = replace(self._playback)
             refused = self._refused if monotonic() >= self._refuse_at else None
@@ -301,7 +327,7 @@ class Session:
             self._desk.go(steps)
         if refused is not None and self._good is not None and self._runner.withdraw(refused.wish, self._good.wish):
             self._window.refuse(refused, self._good.trajectory.config)
-        self._window.draw(playback.time)
+        self._window.draw(playback.time, elapsed)
         if with_text:
             self._window.show_time(playback, driving)
             self._window.show_status(self._runner.under_way())
@@ -326,6 +352,7 @@ class Session:
                 dark=self._window.dark,
                 time=time,
                 playing=playing,
+                drive=self._good.state if isinstance(self._good, Driven) else None,
             ),
         )
 

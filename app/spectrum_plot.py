@@ -6,14 +6,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.markup import page
 from app.plots import Curve, Plot, thin
-from model.spectrum import Marks, Mode, acceleration_spectrum
+from model.modes import Modes
+from model.signals import CENTRE_OF_MASS, seat
+from model.spectrum import acceleration_density, acceleration_spectrum
 from model.trajectory import Trajectory
 
 LOWEST_END = 8.0  # Hz: the axis goes this far at least …
 HARMONICS = 3.0  # … and to this many times v/λ
-DECIMALS = 3
+DECIMALS = 4
 LEAST_SAMPLES = 8  # of a run that has a spectrum
 
 
@@ -22,24 +23,42 @@ class Mark(NamedTuple):
 
     name: str
     frequency: float  # Hz
-    damping_ratio: float | None  # part of the critical damping; None for what drives the vehicle
-    meaning: str
+    drives: bool = False  # the vehicle, other than its own frequencies
 
 
-def spectrum_plot(run: Trajectory, colour: str, marks: tuple[Mark, ...], baseline: Trajectory | None = None) -> Plot:
-    """Amplitude spectrum of the hull's vertical acceleration in the steady part of the run, m/s²."""
-    curves = [Curve("Hull", colour)]
-    frequency, amplitude = _spectrum(run)
-    columns = [amplitude]
+def spectrum_plot(
+    run: Trajectory,
+    colour: str,
+    marks: tuple[Mark, ...],
+    baseline: Trajectory | None = None,
+    *,
+    density: bool = False,
+    at_seat: bool = False,
+) -> Plot:
+    """Spectrum of the vertical acceleration in the steady part of the run, at the centre of mass or the driver's seat.
+
+    Amplitude, m/s², or power density, m²/s³.
+    """
+
+    def spectrum(trajectory: Trajectory) -> tuple[np.ndarray, np.ndarray]:
+        if len(trajectory.t) < LEAST_SAMPLES:
+            return np.zeros(1), np.zeros(1)
+        point = seat(trajectory.config) if at_seat else CENTRE_OF_MASS
+        return (acceleration_density if density else acceleration_spectrum)(trajectory, point)
+
+    place = "Driver's seat" if at_seat else "Centre of mass"
+    curves = [Curve(place, colour)]
+    frequency, height = spectrum(run)
+    columns = [height]
     if baseline is not None and len(baseline.t) >= LEAST_SAMPLES:
-        curves += [Curve("Hull", colour, "baseline")]
-        columns += [np.interp(frequency, *_spectrum(baseline), right=np.nan)]
-    highest = max((HARMONICS * mark.frequency for mark in marks if mark.damping_ratio is None), default=0.0)
+        curves += [Curve(place, colour, "baseline")]
+        columns += [np.interp(frequency, *spectrum(baseline), right=np.nan)]
+    highest = max((HARMONICS * mark.frequency for mark in marks if mark.drives), default=0.0)
     shown = frequency <= max(LOWEST_END, highest)
     frequency, values = thin(frequency[shown], np.column_stack(columns)[shown])
     return Plot(
-        "Amplitude of the hull's vertical acceleration",
-        "m/s²",
+        f"Vertical acceleration: {'power density' if density else 'amplitude'}",
+        "m²/s³" if density else "m/s²",
         tuple(curves),
         (0.0, 0.1),
         frequency,
@@ -48,35 +67,9 @@ def spectrum_plot(run: Trajectory, colour: str, marks: tuple[Mark, ...], baselin
     )
 
 
-def named(marks: Marks) -> tuple[Mark, ...]:
-    """Excitation and natural frequencies with their names, as far as they exist; the highest first."""
-    found = []
-    if marks.excitation is not None:
-        meaning = "waves met each second: the road shakes here, and at its multiples"
-        found.append(Mark("v/λ", marks.excitation, None, meaning))
-    for name, mode, meaning in (
-        ("Bounce", marks.bounce, "the hull's own up and down"),
-        ("Pitch", marks.pitch, "the hull's own nodding"),
-    ):
-        if isinstance(mode, Mode):
-            found.append(Mark(name, mode.frequency, mode.damping_ratio, meaning))
+def named(excitation: float | None, modes: Modes | None) -> tuple[Mark, ...]:
+    """Excitation v/λ, Hz, and the hull's natural frequencies, as far as they exist; the highest first."""
+    found = [] if excitation is None else [Mark("v/λ", excitation, drives=True)]
+    hull = () if modes is None else (modes.bounce, modes.pitch)
+    found += [Mark(mode.name, mode.frequency) for mode in hull if mode is not None]
     return tuple(sorted(found, key=lambda mark: -mark.frequency))
-
-
-def marks_table(marks: tuple[Mark, ...]) -> str:
-    """HTML: what the marks are. None of it is a user's text."""
-    rows = "".join(map(_row, marks))
-    head = "<tr><th></th><th>Frequency</th><th>Damping ratio</th><th></th></tr>"
-    note = "The nearer v/λ and its multiples come to bounce or pitch, the harder the ride; damping flattens the peak."
-    return page(f'<table class="trackride-facts trackride-modes">{head}{rows}</table><p>{note}</p>')
-
-
-def _row(mark: Mark) -> str:
-    damping = "" if mark.damping_ratio is None else f"{100 * mark.damping_ratio:.0f} %"
-    return f"<tr><th>{mark.name}</th><td>{mark.frequency:.2f} Hz</td><td>{damping}</td><td>{mark.meaning}</td></tr>"
-
-
-def _spectrum(run: Trajectory) -> tuple[np.ndarray, np.ndarray]:
-    if len(run.t) < LEAST_SAMPLES:
-        return np.zeros(1), np.zeros(1)
-    return acceleration_spectrum(run)

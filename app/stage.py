@@ -11,6 +11,7 @@ from collections.abc import Callable
 from app.camera import Camera, Tab, View
 from app.colours import DARK, LIGHT, wheel_palette
 from app.ghost import Ghost
+from app.labels import WheelLabels
 from app.marks import DEFAULTS, Marks
 from app.nodes import RoadNodes, Surroundings, VehicleNodes
 from app.scene import Scene, build_scene, live_scene
@@ -41,11 +42,13 @@ class Stage:
         self._follow = True
         self._arrow_scale = 1.0
         self._show_surroundings = True
-        self._visible = {"hull": True, "arrows": True, "labels": True}
+        self._visible = {"hull": True, "arrows": True}
+        self._labelled = {"names": True, "loads": False}
         self._camera = Camera(client)
         self._surroundings = Surroundings(client.scene, DARK if dark else LIGHT)
         self._scene: Scene | None = None
         self._vehicle: VehicleNodes | None = None
+        self._labels: WheelLabels | None = None
         self._road: RoadNodes | None = None
         self._time = 0.0
         self._marks: Marks | None = None
@@ -109,6 +112,8 @@ class Stage:
         with self._client.atomic():
             vehicle.draw(scene, now)
             road.draw(scene, now)
+            if self._labels is not None:
+                self._labels.move(now.x - now.origin, scene.lowest)
             if self._marks is not None:
                 self._marks.draw(scene, now)
             if self._ghost is not None and not self._live:
@@ -216,11 +221,31 @@ class Stage:
     @property
     def show_labels(self) -> bool:
         """The wheels' names."""
-        return self._visible["labels"]
+        return self._labelled["names"]
 
     @show_labels.setter
     def show_labels(self, on: bool) -> None:
-        self._switch("labels", on)
+        self._label(names=on)
+
+    @property
+    def show_loads(self) -> bool:
+        """The normal loads at the wheels' names."""
+        return self._labelled["loads"]
+
+    @show_loads.setter
+    def show_loads(self, on: bool) -> None:
+        self._label(loads=on)
+
+    def write_loads(self) -> None:
+        """Bring the loads at the wheels' names up to date: seldom enough to be read."""
+        if self._scene is not None and self._labels is not None and self._labelled["loads"]:
+            self._labels.write(self._scene.loads(self._time))
+
+    def _label(self, **changed: bool) -> None:
+        self._labelled |= changed
+        if self._labels is not None:
+            self._labels.show(**self._labelled)
+            self.write_loads()
 
     def _switch(self, what: str, on: bool) -> None:
         self._visible[what] = on
@@ -257,5 +282,7 @@ class Stage:
         self._marks = Marks(self._client.scene, scene, now, self._marked)
         self._marks.colour(DARK if self._dark else LIGHT, palette)
         self._vehicle.show(**self._visible)
+        self._labels = WheelLabels(self._client.scene, scene.layout)
+        self._label()
         self._road = RoadNodes(self._client.scene, scene.layout)
         self._road.colour(DARK if self._dark else LIGHT)

@@ -1,13 +1,17 @@
-"""The page's look and keys: theme, a few rules of CSS, which keys move the camera no more, and whether it is seen."""
+"""The page's look and keys: theme, a few rules of CSS, keys that leave the camera alone, hints, whether it is seen."""
 
 from __future__ import annotations
+
+import html
+import json
 
 import viser
 
 BRAND = (28, 108, 178)
 
 # Only wishes: without them everything works and can be read. The picture that cannot be loaded runs its line once:
-# viser turns and moves the camera with some of our keys, wherever they are pressed, a slider included.
+# viser turns and moves the camera with some of our keys, wherever they are pressed, a slider included; it shows hints
+# over boxes only: here also over their labels, and those of plain buttons, which come in `add_hints`.
 # IN_VIEW stands for the hidden checkbox that a page in the background takes its tick from. No :has() in the rules:
 # with it the browser takes eight times as long over each change of the page, and many come in a second.
 PAGE = """<img hidden src="data:," onerror="
@@ -21,18 +25,32 @@ PAGE = """<img hidden src="data:," onerror="
     document.documentElement.addEventListener('keydown', (event) => {
       if (['ArrowLeft', 'ArrowRight', 'KeyD', 'KeyS'].includes(event.code)) event.stopPropagation();
     });
+    for (const [moved, into] of [['mouseover', 'mouseenter'], ['mouseout', 'mouseleave']]) {
+      document.body.addEventListener(moved, ({target, clientX, clientY}) => {
+        const button = target.closest?.('button[id]');
+        if (button && !button.title)
+          button.title = JSON.parse(document.getElementById('trackride-hints')?.dataset.hints ?? '{}')[button.id] ?? '';
+        const name = target.closest?.('label[for]')?.closest('div[style]');
+        const hinted = name?.nextElementSibling?.firstElementChild;
+        hinted?.dispatchEvent(new PointerEvent('pointerover', {bubbles: true, pointerType: 'mouse'}));
+        hinted?.dispatchEvent(new MouseEvent(into, {clientX, clientY}));
+      });
+    }
     document.addEventListener('visibilitychange', () => {
       const box = document.getElementById(document.getElementById('trackride-style')?.dataset.inView);
       if (box && box.checked === document.hidden) box.click();
     });
-  }">
+  }"><p class="trackride-intro">Move a slider: the run is computed anew. Ctrl+K: all keys.</p>
 <style id="trackride-style" data-in-view="IN_VIEW">
   [data-trackride="page"] + div { display: none; }
+  [data-trackride="panel"] { padding-right: 4px; }
   [data-trackride="panel"] div[style*="flex-shrink: 0"] { width: 9.6em !important; }
   [data-trackride="panel"] .mantine-Paper-root div[style*="flex-shrink: 0"] { width: 8.96em !important; }
   [data-trackride="panel"] div[style*="flex-shrink: 0"] > p { letter-spacing: -0.3px !important;
     font-size: 0.8em !important; }
   [data-trackride="panel"] > .mantine-Paper-root { margin-bottom: 1.15em !important; }
+  .trackride-intro { margin: -0.35em 0 0.6em; padding: 0 0.95em; font-size: 0.78em;
+    color: var(--mantine-color-dimmed); }
   .trackride-status { font-size: 0.8em; line-height: 1.5; padding: 0 0.8em 0.5em; white-space: nowrap;
     overflow: hidden; text-overflow: ellipsis; color: var(--mantine-color-dimmed); }
   .trackride-status b { font-weight: 550; color: var(--mantine-color-text); }
@@ -51,3 +69,13 @@ def add_page(gui: viser.GuiApi) -> viser.GuiCheckboxHandle:
     in_view = gui.add_checkbox("In view", True)
     page.content = PAGE.replace("IN_VIEW", in_view._impl.uuid)
     return in_view
+
+
+def add_hints(gui: viser.GuiApi) -> None:
+    """Let the page show the hints of the plain buttons that there are by now: viser takes them and does not."""
+    buttons = {
+        uuid: handle.hint
+        for uuid, handle in gui._gui_input_handle_from_uuid.items()
+        if isinstance(handle, viser.GuiButtonHandle | viser.GuiUploadButtonHandle) and handle.hint
+    }
+    gui.add_html(f'<template id="trackride-hints" data-hints="{html.escape(json.dumps(buttons))}"></template>')

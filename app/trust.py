@@ -9,13 +9,15 @@ from app.markup import page, words_html
 from model.energy import energy_balance, load_balance
 from model.errata import ERRATA
 from model.parameters import number_text
-from model.ride import RideWarning, warnings
+from model.ride import RideWarning, motion_warnings, warnings
+from model.road import Road
 from model.trajectory import Trajectory
 
 DRIFT_LIMIT = 1e-5  # m by which joints may be apart
 CLOSING_LIMIT = 0.5  # % of the energy turned over that may be unaccounted for
 FORCE_LIMIT = 1e-6  # of the weight that Newton's law may be broken by
 LEAST_SAMPLES = 2  # of a run that has an energy balance
+LEFT_OPEN = "How deep the wheels sink into the ground is judged when the drive pauses."
 
 
 class Check(NamedTuple):
@@ -27,14 +29,20 @@ class Check(NamedTuple):
     good: bool | None = None  # None: nothing to be judged
 
 
-def trust_html(run: Trajectory, driving: bool = False) -> str:
-    """HTML of figures and warnings. driving: the run is a stretch of an endless drive, without balances of its own."""
+def trust_html(run: Trajectory, driving: bool = False, road: Road | None = None) -> str:
+    """HTML of figures and warnings. driving: the run is a stretch of an endless drive, without balances of its own.
+
+    road: under that stretch; without it, how deep its wheels sank is left open.
+    """
     if len(run.t) < LEAST_SAMPLES:
         return page(f"<p>There is nothing to judge: {html.escape(run.status)}.</p>")
-    found = [] if driving else warnings(run)
+    open_ended = driving and road is None
+    found = motion_warnings(run) if open_ended else warnings(run, road)
     checks = [] if driving else balances(run)
+    left_open = f"<p>{LEFT_OPEN}</p>" if open_ended else ""
     return page(
-        f"<h4>Warnings</h4>{_warnings(found)}<h4>Does the run obey its laws?</h4>{_table([*checks, drift(run)])}"
+        f"<h4>Warnings</h4>{_warnings(found)}{left_open}"
+        f"<h4>Does the run obey its laws?</h4>{_table([*checks, drift(run)])}"
         f"<h4>Work</h4>{_table(work(run))}"
     )
 
@@ -52,7 +60,7 @@ def balances(run: Trajectory) -> list[Check]:
     """What the whole run says about energy and forces."""
     energy, force = energy_balance(run), load_balance(run)
     system = run.system
-    weight = float(system.mass.sum() * system.g)
+    weight = float(system.weight.sum())
     broken = float(abs(force.residual).max()) / weight
     return [
         Check(
@@ -89,7 +97,7 @@ def drift(run: Trajectory) -> Check:
 def work(run: Trajectory) -> list[Check]:
     """What the run cost."""
     of, settings = run.statistics, run.config.simulation
-    seconds = float(run.t[-1] - run.t[0])
+    seconds = float(run.t[-1])  # work is counted from the start, of a drive too
     return [
         Check(
             "Integrator", settings.integrator, f"rtol {number_text(settings.rtol)}, atol {number_text(settings.atol)}"
@@ -107,7 +115,7 @@ def work(run: Trajectory) -> list[Check]:
 
 def _warnings(found: list[RideWarning]) -> str:
     if not found:
-        return '<p class="good">None: arms, penetration and wavelength are within what the model was made for.</p>'
+        return '<p class="good">None: this is within what the model was made for.</p>'
     items = "".join(f"<li><b>{html.escape(w.what)}</b><br>{html.escape(w.meaning)}</li>" for w in found)
     return f'<ul class="bad">{items}</ul>'
 

@@ -18,25 +18,46 @@ VIEWS = {
     "Wheel": "wheel",
 }  # shown -> the stage's name
 SWITCHES = {  # attribute of the stage -> label, whether it is on at first, hint
-    "follow": ("Follow vehicle", True, "The camera moves along with the vehicle (F)"),
-    "show_arrows": ("Load arrows", True, "Normal load f_n of each wheel, as long as it is large"),
-    "show_static_load": ("Static loads", True, "A tick across each arrow: where it ends at rest on flat ground"),
+    "follow": ("Follow vehicle", True, "The camera goes along with the vehicle (F); off: the vehicle drives past"),
+    "show_arrows": (
+        "Load arrows",
+        True,
+        "On each contact point, as high as the normal load f_n is large; none: in the air",
+    ),
+    "show_static_load": ("Static loads", True, "A tick across each arrow: how high it is at rest on flat ground"),
     "show_traction": (
         "Traction arrows",
         False,
-        f"Force f_t along the road, {TRACTION_SCALE:g} × the loads' scale",
+        f"Force f_t along the road, drawn {TRACTION_SCALE:g} times as long as a load of that size; forward: it drives",
     ),
     "show_in_air": ("Wheels in the air", True, "A red ring around each wheel that has left the ground"),
-    "show_load_colours": ("Load colours", False, "A ring on each wheel in the colour of its normal load"),
+    "show_load_colours": (
+        "Load colours",
+        False,
+        "A ring on each wheel in the colour of its normal load f_n, kN; the scale appears below",
+    ),
     "show_travel": (
         "Travel",
         False,
-        "A bar beside each road wheel: how far it moves in the hull; long mark: at rest",
+        "A bar beside each road wheel: how far it moves up and down in the hull; long mark: at rest",
     ),
-    "show_labels": ("Wheel names", True, "R1… road wheels, I1… imaginary wheels, front first"),
+    "show_labels": (
+        "Wheel names",
+        True,
+        "R1… are road wheels, I1… imaginary wheels, front first. Click a wheel for all its figures",
+    ),
+    "show_loads": ("Loads in figures", False, "The normal load f_n, kN, under each wheel's name"),
     "show_scale_bar": ("Scale bar", True, "One metre, under the rear of the vehicle"),
-    "show_grid": ("Grid", False, "Half metres and metres on a wall behind the vehicle; heights from level ground"),
+    "show_grid": (
+        "Grid",
+        False,
+        "Lines every half metre and metre on a wall behind the vehicle; heights from level ground",
+    ),
 }
+LOOK = (
+    "Side, front corner, ahead, or close to the front wheels (keys 1, 2, 3, 4). In the view itself drag to turn, with "
+    "the right button to shift; the mouse's wheel zooms."
+)
 ARROW_SCALE = 0.25, 4.0, 0.25  # least, most, step
 
 
@@ -57,7 +78,7 @@ class ViewPanel:
 
     def __init__(self, gui: viser.GuiApi, dark: bool, viewer: Viewer) -> None:
         with gui.add_folder("View", expand_by_default=False):
-            views = gui.add_button_group("Look from", tuple(VIEWS), hint="Keys 1, 2, 3, 4")
+            views = gui.add_button_group("Look from", tuple(VIEWS), hint=LOOK)
             self._switches: dict[str, Any] = {
                 attribute: gui.add_checkbox(label, on, hint=hint) for attribute, (label, on, hint) in SWITCHES.items()
             }
@@ -65,10 +86,10 @@ class ViewPanel:
                 "Arrow length",
                 *ARROW_SCALE,
                 initial_value=1.0,
-                hint="Of all force arrows; at 1 an even share of the weight is as high as a road wheel",
+                hint="Of all force arrows; at 1 an even share of the weight is as high as a road wheel, at 2 as two",
             )
+            night = gui.add_checkbox("Dark", dark, hint="Dark colours for page, plots and view")
             self._load_scale = gui.add_html("", visible=False)
-            night = gui.add_checkbox("Dark", dark, hint="Dark colours for the whole page")
         views.on_click(by_user(lambda event: viewer.set_view(VIEWS[event.target.value]), viewer.fail))
         for attribute, box in self._switches.items():
             box.on_update(by_user(_switching(viewer, attribute), viewer.fail))

@@ -10,7 +10,7 @@ import viser
 from app.callbacks import by_user
 from model.ride import WheelState
 
-WIDTH, HEIGHT, GAP = 236, 276, 14  # px; GAP from the view's edges
+HEIGHT, GAP = 152, 14  # px; GAP from the view's upper edge
 ABSENT = "–"
 
 
@@ -23,12 +23,13 @@ class Picker(Protocol):
 
 
 class WheelCard:
-    """A small panel in the view's upper right corner, there while a wheel is picked."""
+    """A low panel along the view's upper edge, above the vehicle, there while a wheel is picked."""
 
     def __init__(self, gui: viser.GuiApi, picker: Picker) -> None:
         self._gui, self._picker = gui, picker
         self._panel: viser.PanelHandle | None = None
         self._text: Any = None
+        self._place = 0, 0
         self.wheel: int | None = None
 
     def pick(self, wheel: int | None) -> int | None:
@@ -40,11 +41,17 @@ class WheelCard:
         elif self.wheel is not None and self._panel is None:
             self._panel = self._gui.add_panel()
             with self._panel.add_tab("Wheel"):
-                self._text = self._gui.add_html("")
                 close = self._gui.add_button("Close", color="gray")
+                self._text = self._gui.add_html("")
             close.on_click(by_user(lambda event: self._picker.pick_wheel(None), self._picker.fail))
-            self._panel.float(x=-GAP, y=GAP, width=WIDTH, height=HEIGHT)
+            self.place(*self._place)
         return self.wheel
+
+    def place(self, x: int, width: int) -> None:
+        """Float along the upper edge of the view, px from its left edge."""
+        self._place = x, width
+        if self._panel is not None:
+            self._panel.float(x=x, y=GAP, width=width, height=HEIGHT)
 
     def show(self, state: WheelState, colour: str) -> None:
         """Fill in the card; colour: the wheel's, CSS."""
@@ -56,20 +63,20 @@ def card(state: WheelState, colour: str) -> str:
     """HTML of a wheel's figures."""
     family = "Road wheel" if state.name.startswith("R") else "Imaginary wheel"
     in_air = state.penetration is None
-    rows = (
+    figures = (
         ("Normal load", _figure(state.normal_load / 1e3, 2, "kN")),
-        ("at rest", _figure(state.static_load / 1e3, 2, "kN")),
         ("Share of all loads", _figure(_percent(state.load_share), 1, "%")),
         ("Traction", _figure(state.traction / 1e3, 2, "kN")),
-        ("Share of torque", _figure(_percent(state.torque_share), 1, "%")),
         ("Penetration", _figure(None if state.penetration is None else 1e3 * state.penetration, 1, "mm")),
+        ("Load at rest", _figure(state.static_load / 1e3, 2, "kN")),
+        ("Share of torque", _figure(_percent(state.torque_share), 1, "%")),
         ("Slip of the rim", _figure(state.slip_velocity, 3, "m/s")),
         ("Arm in the hull", _figure(state.arm_angle, 2, "°")),
     )
-    lines = "".join(f"<tr><td>{label}</td><td>{value}</td></tr>" for label, value in rows)
+    cells = "".join(f"<span>{label}<b>{value}</b></span>" for label, value in figures)
     return (
         f'<div class="trackride-wheel"><p><i style="background:{colour}"></i><b>{escape(state.name)}</b> {family}'
-        f"{' <em>in the air</em>' if in_air else ''}</p><table>{lines}</table></div>{STYLE}"
+        f"{' <em>in the air</em>' if in_air else ''}</p><div>{cells}</div></div>{STYLE}"
     )
 
 
@@ -78,15 +85,21 @@ def _percent(share: float | None) -> float | None:
 
 
 def _figure(value: float | None, digits: int, unit: str) -> str:
-    return ABSENT if value is None else f"{value:.{digits}f}{'' if unit == '°' else ' '}{unit}".replace("-", "−")
+    if value is None:
+        return ABSENT
+    number = round(value, digits) + 0.0  # no minus before zero
+    return f"{number:.{digits}f}{'' if unit == '°' else ' '}{unit}".replace("-", "−")
 
 
 STYLE = """<style>
-  .trackride-wheel { padding: 0 0.8em 0.3em; font-size: 0.82em; line-height: 1.55; }
-  .trackride-wheel p { margin: 0 0 0.3em; white-space: nowrap; }
+  div:has(+ div > .trackride-wheel) { float: right; margin: 0.35em 0.6em 0 0; }
+  div:has(+ div > .trackride-wheel) button { height: 1.8em !important; padding: 0 0.8em; font-size: 0.75em; }
+  .trackride-wheel { padding: 0 0.9em; font-size: 0.8em; line-height: 1.4; }
+  .trackride-wheel p { margin: 0 0 0.35em; line-height: 2; white-space: nowrap; }
   .trackride-wheel i { display: inline-block; width: 0.8em; height: 0.8em; border-radius: 50%; margin-right: 0.5em; }
-  .trackride-wheel em { font-style: normal; font-weight: 550; color: #e03131; float: right; }
-  .trackride-wheel table { width: 100%; border-collapse: collapse; }
-  .trackride-wheel td { padding: 0; white-space: nowrap; }
-  .trackride-wheel td + td { text-align: right; font-variant-numeric: tabular-nums; }
+  .trackride-wheel em { font-style: normal; font-weight: 550; color: light-dark(#d6232b, #ff7b7b); padding-left: 1ch; }
+  .trackride-wheel > div { display: grid; grid-template-columns: repeat(4, 1fr); gap: 0.25em 0.8em; }
+  .trackride-wheel span { color: var(--mantine-color-dimmed); white-space: nowrap; font-size: 0.9em; }
+  .trackride-wheel span b { display: block; font-weight: 550; font-size: 1.1em; color: var(--mantine-color-text);
+    font-variant-numeric: tabular-nums; }
 </style>"""

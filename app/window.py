@@ -6,21 +6,26 @@ import html
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
+import numpy as np
 import viser
 
 from app.callbacks import by_user
 from app.colours import wheel_palette
-from app.controls import ControlPanel, Wishes, refusal
+from app.control_panel import ControlPanel
+from app.controls import Wishes, refusal
 from app.driving import DriveState
 from app.exports_panel import Exporter, ExportsPanel
 from app.keys import Keys, add_keys
+from app.mode_show import PERIOD, ModeShow
 from app.playback import Playback
 from app.playback_panel import PlaybackPanel, Player
 from app.plot_panel import PlotPanel
+from app.road_view import RoadAhead
 from app.runner import Driven, Failed, Finished, Refused
 from app.runs_panel import Keeping, RunsPanel
 from app.screen import LEFT, Layout, Screen
-from app.style import add_page, apply_theme
+from app.spectrum_panel import Analyst
+from app.style import add_hints, add_page, apply_theme
 from app.view_panel import Viewer, ViewPanel
 from app.wheel_card import Picker, WheelCard
 from model.config import Config, ConfigError
@@ -55,6 +60,8 @@ class Scene(Protocol):
 
     def wheel_state(self, wheel: int) -> WheelState | None: ...
 
+    def write_loads(self) -> None: ...
+
     @property
     def load_top(self) -> float | None: ...
 
@@ -63,7 +70,7 @@ class Scene(Protocol):
     def set_dark(self, dark: bool) -> None: ...
 
 
-class Actions(Wishes, Player, Viewer, Picker, Keeping, Exporter, Keys, Protocol):
+class Actions(Wishes, Player, Viewer, Picker, Keeping, Exporter, Analyst, Keys, Protocol):
     """What the panels ask of the session."""
 
     def set_in_view(self, in_view: bool) -> None: ...
@@ -87,7 +94,9 @@ class Window:
         self._baseline: Trajectory | None = None
         self._drive: DriveState | None = None  # the last of the drive that is shown
         self._drawn: tuple[int, float] | None = None  # run and time that the 3-D view shows
+        self._mode: ModeShow | None = None  # in the run's place
         self._run_number = 0
+        self._road_ahead = RoadAhead()
         self._notices: dict[str, viser.NotificationHandle] = {}
         self._screen = Screen(client.camera.image_width, client.camera.image_height)
         layout = self._screen.first()
@@ -104,13 +113,14 @@ class Window:
                 self._view = ViewPanel(gui, dark, actions)
                 self.exports = ExportsPanel(gui, actions)
             self._plots_panel = gui.add_panel()
-            self._plots = PlotPanel(gui, self._plots_panel, layout.page_height, dark, client.flush)
+            self._plots = PlotPanel(gui, self._plots_panel, layout.page_height, dark, actions, client.flush)
             self.runs = RunsPanel(gui, self._plots.runs_tab, actions)
             self._plots_panel.dock_right()
             self._player = PlaybackPanel(gui, actions)
+            self._card = WheelCard(gui, actions)
             self._resize(layout)
             add_keys(gui, actions)
-            self._card = WheelCard(gui, actions)
+            add_hints(gui)
         self.scene = make_scene(client, dark)
         self.scene.on_pick(actions.pick_wheel)
 
@@ -118,6 +128,7 @@ class Window:
 
     def show_run(self, done: Finished, time: float, *, settled: bool) -> None:
         """Show a finished run at `time`, s. settled: no newer wish is on its way, so that the controls may follow."""
+        self._leave_mode()
         run = done.trajectory
         self._run, self._run_number, self._drive = run, done.wish.number, None
         self._plot(time)
@@ -132,15 +143,20 @@ class Window:
             self._notify("diverged", "The run did not come to its end", body, "orange", stays=True)
         self._forget("refused")
 
-    def show_drive(self, driven: Driven, *, settled: bool) -> None:
-        """Show how far the drive has come; the plots only when there is something new for them."""
+    def show_drive(self, driven: Driven, time: float, *, settled: bool) -> None:
+        """Show how far the drive has come, or where in its past the user is, at `time`, s.
+
+        The plots follow only when there is something new for them.
+        """
+        self._leave_mode()
         before, self._drive = self._drive, driven.state
         state = driven.state
         if before is None or before.past is not state.past:
             self._run = state.past
-            self._plot(state.time)
+            self._plot(time)
         self.scene.show_live(state.recent, state.road)
-        self.scene.draw(state.time)
+        self.scene.draw(time)
+        self._drawn = (self._run_number, time)
         if settled and (before is None or before.config != state.config):
             self._controls.show(state.config, touched=driven.wish.touched)
         if state.ended:
@@ -151,10 +167,38 @@ class Window:
 
     def show_baseline(self, baseline: Trajectory | None) -> None:
         """Compare with this run from now on, or with None no more."""
+        self._end_mode()
         self._baseline = baseline
         if self._run is not None:
             self._plot(self._plots.time)
         self.scene.show_ghost(baseline)
+
+    def show_mode(self) -> None:
+        """Show the mode that is chosen instead of the run, until the run moves on or another one comes."""
+        mode, run = self._plots.spectrum.chosen, self._run
+        if mode is None or run is None or self._drive is not None or not len(run.t):
+            self._end_mode()
+            return
+        x = float(np.interp(self._plots.time, run.t, run.q[:, run.system.chassis, 0]))
+        self._mode = ModeShow(run.config, mode, x)
+        self.scene.show(self._mode.swing)
+        self.scene.show_ghost(self._mode.rest)
+
+    def _end_mode(self) -> None:
+        """Show the run again."""
+        if self._mode is not None and self._run is not None:
+            self._leave_mode()
+            self.scene.show(self._run)
+
+    def _leave_mode(self) -> None:
+        """Make ready for something else to be shown."""
+        if self._mode is not None:
+            self._mode, self._drawn = None, None
+            self.scene.show_ghost(self._baseline)
+            self._plots.spectrum.choose_run()
+
+    def redraw_spectrum(self) -> None:
+        self._plots.redraw_spectrum()
 
     def show_presets(self, presets: Mapping[str, Config], chosen: str) -> None:
         """Offer these presets, `chosen` as the one that is used."""
@@ -180,7 +224,11 @@ class Window:
     def show_status(self, under_way: tuple[int, float, float] | None) -> None:
         """Say which run is shown, or how far the next is (number, part done, seconds so far)."""
         if self._drive is not None:
-            self._controls.status.content = status_line("Drive", "changes act at once")
+            self._controls.status.content = status_line("Drive", drive_facts(self._drive))
+        elif self._mode is not None:
+            mode = self._mode.mode
+            facts = f"{mode.frequency:.3g} Hz, shown at {1 / PERIOD:g} Hz · Play: the run"
+            self._controls.status.content = status_line(mode.name, facts)
         elif under_way is not None and (under_way[2] > BUSY_DELAY or self._run is None):
             number, part, seconds = under_way
             doing = FIRST_START if part == 0 and seconds > SLOW_START else f"computing… {100 * part:.0f} %"
@@ -196,9 +244,21 @@ class Window:
 
     # ── Time ──
 
-    def draw(self, time: float) -> None:
-        """The 3-D view at a time, s."""
-        if self._drive is None and self._run is not None and self._drawn != (self._run_number, time):
+    def draw(self, time: float, elapsed: float = 0.0) -> None:
+        """The 3-D view at a time of the run, s, `elapsed` s of real time after it was drawn last.
+
+        Of a drive that goes on, each instant is drawn as it comes.
+        """
+        if self._mode is not None:
+            if self._mode.since is None:
+                self._mode.since = time
+            if self._mode.since == time:
+                if elapsed:
+                    self.scene.draw(self._mode.move_on(elapsed))
+                return
+            self._end_mode()
+        goes_on = self._drive is not None and not self._drive.stands
+        if not goes_on and self._run is not None and self._drawn != (self._run_number, time):
             self.scene.draw(time)
             self._drawn = (self._run_number, time)
 
@@ -208,11 +268,24 @@ class Window:
             self._player.show_drive(playback, self._drive)
         else:
             self._player.show(playback)
-            if self._drive is None:
-                self._plots.point_at(playback.time)
+        if self._drive is None or self._drive.stands:
+            self._plots.point_at(playback.time)
         self._plots.settle()
+        self.scene.write_loads()
         self._show_wheel()
+        self._show_road(playback.time)
         self._view.show_load_scale(self.scene.load_top)
+
+    def _show_road(self, time: float) -> None:
+        """The side view of the road about the vehicle at a time of the run or drive, s."""
+        if self._drive is not None:
+            view = self._road_ahead.of_drive(self._drive.recent, self._drive.road, time)
+        elif self._run is not None and len(self._run.t):
+            view = self._road_ahead.of_run(self._run, time)
+        else:
+            return
+        if self._controls.road_view.content != view:
+            self._controls.road_view.content = view
 
     # ── Looks ──
 
@@ -292,10 +365,13 @@ class Window:
         self._plots_panel.set_width(layout.right)
         self._plots.set_page_height(layout.page_height)
         self._player.place(layout.player_x, layout.player_width)
+        self._card.place(layout.player_x, layout.player_width)
 
     def _plot(self, time: float) -> None:
         assert self._run is not None
-        self._plots.show(self._run, self._baseline, time, driving=self._drive is not None)
+        drive = self._drive
+        road = drive.road if drive is not None and drive.stands else None
+        self._plots.show(self._run, self._baseline, time, driving=drive is not None, road=road)
 
     def _notify(self, kind: str, title: str, body: str, color: Any, stays: bool = False) -> None:
         """One notification of each kind: a newer one takes the older one's place."""
@@ -311,6 +387,13 @@ class Window:
         notice = self._notices.pop(kind, None)
         if notice is not None:
             notice.remove()
+
+
+def drive_facts(state: DriveState) -> str:
+    """What the status line says of a drive."""
+    if state.ended:
+        return "it came to an end; look back, or restart"
+    return "look back with ← or the slider" if state.stands else "changes act at once"
 
 
 def status_line(name: str, facts: str, trouble: str = "") -> str:

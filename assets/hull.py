@@ -21,6 +21,10 @@ GLASS: Rgba = (46, 60, 72, 255)
 LAMP: Rgba = (250, 240, 204, 255)
 TAIL_LAMP: Rgba = (176, 54, 44, 255)
 ROOF, ROOF_HALF_WIDTH = 1.56, 1.20
+TURRET = (0.82, 0.04), (0.50, 0.385)  # radius and height over the roof, of the cone's foot and top
+TURRET_CORNERS = 32  # of its circles among the edges
+GUN = 0.84, 2.52  # m before the turret's axis, from the mantlet to the muzzle
+GUN_HEIGHT, GUN_RISE = 0.20, 0.03  # m over the roof, and m upwards for each m forward
 
 Point = tuple[float, float, float]
 
@@ -37,10 +41,51 @@ def _across(outline: Sequence[Point]) -> np.ndarray:
     return np.array([(x, sign * y, z) for x, y, z in outline for sign in (-1, 1)])
 
 
+def hull_edges(layout: Layout) -> list[np.ndarray]:
+    """Lines, each (K, 3), along the edges that make the shape of body, turret and gun; in the frame of `hull`."""
+    unit = layout.at_scale_one()
+    upper, (_, chin) = _upper(unit), _nose(unit)
+    side = np.array([*upper, upper[0], chin])
+    across = [np.array([corner, corner]) for corner in (*upper, chin)]
+    lines = [side, side * (1, -1, 1), *(bar * np.array([(1, 1, 1), (1, -1, 1)]) for bar in across)]
+    around = 2 * np.pi * np.arange(TURRET_CORNERS + 1) / TURRET_CORNERS
+    circle = np.column_stack([np.cos(around), np.sin(around), np.zeros(len(around))])
+    foot, top = (radius * circle + (0.0, 0.0, z) for radius, z in TURRET)
+    height = np.array([0.0, 0.0, GUN_HEIGHT + 0.05])  # along its upper edge
+    turret = [foot, top, *np.stack([foot, top], axis=1)[: -1 : TURRET_CORNERS // 8]]
+    turret += [np.array([(x, 0.0, GUN_RISE * x) for x in GUN]) + height]
+    lines += [line + _turret_foot(unit) for line in turret]
+    return [layout.scale * line for line in lines]
+
+
+def _nose(layout: Layout) -> tuple[Point, Point]:
+    """Its tip and, below, its chin."""
+    nose, w = layout.sprocket.x, layout.hull_half_width
+    return (nose + 0.46, w, layout.fender + 0.04), (nose + 0.02, w, layout.belly + 0.16)
+
+
+def _upper(layout: Layout) -> list[Point]:
+    """Corners of the body above the fenders, from the tip up and back."""
+    nose, tail, deck = layout.sprocket.x, layout.idler.x, layout.fender + 0.02
+    wide, narrow = layout.half_width - 0.08, ROOF_HALF_WIDTH
+    return [
+        _nose(layout)[0],
+        (nose + 0.30, wide, deck),
+        (nose + 0.24, wide - 0.05, deck + 0.10),
+        (nose - 1.30, narrow, ROOF),
+        (tail - 0.24, narrow, ROOF),
+        (tail - 0.36, wide, deck),
+    ]
+
+
+def _turret_foot(layout: Layout) -> np.ndarray:
+    return np.array([layout.middle - 0.18, 0.0, ROOF - 0.005])
+
+
 def _body(layout: Layout) -> list[Part]:
     nose, tail, floor, deck = layout.sprocket.x, layout.idler.x, layout.belly, layout.fender + 0.02
-    w, wide, narrow = layout.hull_half_width, layout.half_width - 0.08, ROOF_HALF_WIDTH
-    tip, chin = (nose + 0.46, w, deck + 0.02), (nose + 0.02, w, floor + 0.16)
+    w = layout.hull_half_width
+    tip, chin = _nose(layout)
     lower = [
         chin,
         (nose - 0.28, w, floor),
@@ -48,17 +93,9 @@ def _body(layout: Layout) -> list[Part]:
         (tail - 0.26, w, deck),
         (nose + 0.34, w, deck),
     ]
-    upper = [
-        tip,
-        (nose + 0.30, wide, deck),
-        (nose + 0.24, wide - 0.05, deck + 0.10),
-        (nose - 1.30, narrow, ROOF),
-        (tail - 0.24, narrow, ROOF),
-        (tail - 0.36, wide, deck),
-    ]
     return [
         convex(_across(lower), FLOOR, chamfer=0.02),
-        convex(_across(upper), PAINT, chamfer=0.03),
+        convex(_across(_upper(layout)), PAINT, chamfer=0.03),
         convex(_across([tip, chin, (nose - 0.2, w, deck)]), PAINT_DARK, chamfer=0.02),
     ]
 
@@ -86,9 +123,10 @@ def _fenders(layout: Layout) -> list[Part]:
 def _turret(layout: Layout) -> list[Part]:
     """A low conical turret with a hatch, a sight and a light gun."""
     ring = lathe([(0.86, 0.0), (0.86, 0.05), (0.80, 0.05)], PAINT_DARK, 32)
-    cone = lathe([(0.82, 0.04), (0.54, 0.36), (0.50, 0.385), (0.0, 0.40)], PAINT, 48)
+    foot, top = TURRET
+    cone = lathe([foot, (0.54, 0.36), top, (0.0, 0.40)], PAINT, 48)
     hatch = lathe([(0.24, 0.38), (0.24, 0.43), (0.20, 0.45), (0.0, 0.46)], PAINT_LIGHT, 20)
-    gun = [(0.0, 0.7), (0.055, 0.7), (0.055, 1.35), (0.034, 1.37), (0.034, 2.30), (0.048, 2.30), (0.048, 2.52)]
+    gun = [(0.0, 0.7), (0.055, 0.7), (0.055, 1.35), (0.034, 1.37), (0.034, 2.30), (0.048, 2.30), (0.048, GUN[1])]
     mantlet = [(0.50, y, z) for y in (-0.22, 0.22) for z in (0.10, 0.34)]
     mantlet += [(0.84, y, z) for y in (-0.12, 0.12) for z in (0.14, 0.28)]
     parts = [
@@ -96,13 +134,13 @@ def _turret(layout: Layout) -> list[Part]:
         upright(cone),
         upright(hatch).moved(-0.12, -0.16),
         convex(mantlet, PAINT_DARK, chamfer=0.02),
-        lengthwise(lathe([*gun, (0.0, 2.52)], DARK_STEEL, 12)).pitched(0.03).moved(z=0.20),
+        lengthwise(lathe([*gun, (0.0, GUN[1])], DARK_STEEL, 12)).pitched(GUN_RISE).moved(z=GUN_HEIGHT),
         box((0.30, 0.30, 0.40), (0.16, 0.14, 0.14), PAINT_DARK),
         box((0.385, 0.30, 0.41), (0.01, 0.10, 0.07), GLASS),
         box((-0.62, 0.34, 0.62), (0.014, 0.014, 0.9), DARK_STEEL),
         box((-0.62, 0.34, 0.18), (0.06, 0.06, 0.16), PAINT_DARK),
     ]
-    return [part.moved(layout.middle - 0.18, z=ROOF - 0.005) for part in parts]
+    return [part.moved(*_turret_foot(layout)) for part in parts]
 
 
 def _fittings(layout: Layout) -> list[Part]:

@@ -1,13 +1,18 @@
-// What the page itself does about the plots: marks (the time cursor, named frequencies), values at the cursor, zoom.
+// What the page itself does about the plots: marks (the time cursor, named frequencies), values at the cursor, zoom, and
+// curves that are hidden with a click on their name.
 // viser lists its charts in __viserTestpoints.uplots; without that list there are no marks, but all curves.
-// uPlot shares cursor and zoom among charts with the same sync key; one that appears later is given the zoom here.
+// uPlot shares cursor and zoom among charts with the same sync key that are in view; one that comes into view later is
+// given the zoom here, and so are the load maps.
 if (!window.trackridePlots) {
-  const met = new WeakSet();  // charts
+  const TIME = 'trackride-time';
+  const met = new WeakSet(), inView = new WeakSet();  // charts
   const groups = {};  // of charts, by their sync key: marks [[x, name], …] and zoom [from, to] as parts of the data's range
+  const hidden = {};  // names of curves, by the chart's unit and curves: they stay so when a chart is made anew
   const charts = () => Object.values(window.__viserTestpoints?.uplots ?? {}).map((entry) => entry.chart);
   const group = (key) => (key ?? '').startsWith('trackride-') ? groups[key] ??= {marks: [], zoom: [0, 1]} : undefined;
   const groupOf = (chart) => group(chart.cursor.sync?.key);
   const seen = (chart) => chart.width > 0;  // in a tab behind they are 0 px wide; asking for places would lay out the page
+  const ends = (chart) => [chart.data[0][0], chart.data[0].at(-1)];
 
   const point = (chart) => {
     let layer = chart.over.querySelector('.trackride-marks');
@@ -28,33 +33,121 @@ if (!window.trackridePlots) {
     const [now, name] = groupOf(chart).marks[0] ?? [];
     if (name === '' && chart.cursor.left < 0) chart.setLegend({idx: chart.valToIdx(now)}, false);
   };
+  const zoom = (chart) => {
+    const [from, to] = groupOf(chart).zoom, [first, last] = ends(chart), {min, max} = chart.scales.x;
+    const [low, high] = [first + from * (last - first), first + to * (last - first)];
+    const shown = Math.abs(low - min) + Math.abs(high - max) <= 1e-6 * (last - first);  // viser makes some charts with 0…1
+    if (!shown) chart.setScale('x', {min: low, max: high});
+  };
+  const kin = (chart) => {  // a baseline's curve is hidden with the run's
+    const runs = chart.series.filter((curve) => curve.class === 'run');
+    const gone = hidden[[chart.axes[1].label, ...runs.map((curve) => curve.label)]] ??= new Set();
+    return [runs, gone];
+  };
+  const hide = (chart) => chart.series.forEach(({label, show, class: kind}, k) => {
+    const wanted = !kin(chart)[1].has(label);
+    if ((kind === 'run' || kind === 'baseline') && show !== wanted) chart.setSeries(k, {show: wanted});
+  });
   const meet = (chart) => {
     met.add(chart);
     chart.root.classList.add(chart.cursor.sync.key);
-    const shared = groupOf(chart), all = () => [chart.data[0][0], chart.data[0].at(-1)];
-    const [from, to] = shared.zoom, [first, last] = all();
-    if (to - from < 1) chart.setScale('x', {min: first + from * (last - first), max: first + to * (last - first)});
+    chart.root.querySelector('.u-title').title = 'Drag across the plot to zoom in, double-click to see all';
+    chart.root.querySelector('.u-legend').title = 'Click a name to hide its curve, with Ctrl to hide all others';
+    hide(chart);
+    (chart.hooks.setSeries ??= []).push((_, k, change) => {
+      if (k === null || change.show === undefined || chart.series[k].class !== 'run') return;
+      const [runs, gone] = kin(chart);
+      runs.forEach(({label, show}) => show ? gone.delete(label) : gone.add(label));
+      queueMicrotask(() => hide(chart));
+    });
     (chart.hooks.draw ??= []).push(() => {
-      const [first, last] = all(), {min, max} = chart.scales.x;
-      if (last > first && seen(chart)) shared.zoom = [(min - first) / (last - first), (max - first) / (last - first)];
+      const [first, last] = ends(chart), {min, max} = chart.scales.x, shared = groupOf(chart);
+      const drawn = last > first && max > min && inView.has(chart);
+      if (drawn) shared.zoom = [(min - first) / (last - first), (max - first) / (last - first)];
       point(chart);
+      drawMaps();
       requestAnimationFrame(() => read(chart));
     });
     chart.over.addEventListener('mouseleave', () => setTimeout(window.trackridePlots, 0));
   };
   let now = -1;  // s, of the time cursor
-  const pointMaps = () => {  // each on its own: set for the whole page, it would be styled anew at every move
-    for (const field of document.querySelectorAll('.trackride-map .field')) field.style.setProperty('--trackride-now', now);
-  };
   window.trackridePlots = () => {
-    const shown = charts().filter((chart) => groupOf(chart) && seen(chart));
-    pointMaps();
-    shown.forEach((chart) => {
+    drawMaps();
+    charts().filter(groupOf).forEach((chart) => {
+      if (!seen(chart)) return inView.delete(chart);
       if (!met.has(chart)) meet(chart);
+      if (!inView.has(chart)) zoom(chart);
+      inView.add(chart);
       point(chart);
       read(chart);
     });
   };
+
+  const steps = (low, high) => {  // of an axis: five or a few more
+    const power = 10 ** Math.floor(Math.log10((high - low) / 5));
+    const step = power * [5, 2, 1].find((factor) => factor * power <= (high - low) / 5 * (1 + 1e-9));
+    const first = Math.ceil(low / step - 1e-9), last = Math.floor(high / step + 1e-9);
+    return Array.from({length: last - first + 1}, (_, k) => +((first + k) * step).toFixed(9));
+  };
+  const drawMaps = () => document.querySelectorAll('trackride-map').forEach((map) => map.draw());
+  const zoomAll = (range) => {
+    group(TIME).zoom = range;
+    charts().filter((chart) => chart.cursor.sync?.key === TIME && inView.has(chart)).forEach(zoom);
+    drawMaps();
+  };
+  customElements.define('trackride-map', class extends HTMLElement {
+    connectedCallback() {
+      [this.start, this.span] = [Number(this.getAttribute('start')), Number(this.getAttribute('span'))];
+      let from = null, field;  // of a stretch that is being marked: where it began, 0…1 of the field
+      const at = (event) => {
+        const box = field.getBoundingClientRect();
+        return Math.min(Math.max((event.clientX - box.left) / box.width, 0), 1);
+      };
+      this.addEventListener('pointerdown', (event) => {
+        field = event.target.closest('.field');
+        if (!field || event.button) return;
+        from = at(event);
+        field.setPointerCapture(event.pointerId);
+        event.preventDefault();
+      });
+      this.addEventListener('pointermove', (event) => {
+        if (from === null) return;
+        const [low, high] = [from, at(event)].sort((a, b) => a - b);
+        const mark = field.querySelector('b').style;
+        [mark.left, mark.width] = [`${100 * low}%`, `${100 * (high - low)}%`];
+      });
+      this.addEventListener('pointerup', (event) => {
+        if (from === null) return;
+        const [low, high] = [from, at(event)].sort((a, b) => a - b), [first, last] = group(TIME).zoom;
+        from = null;
+        field.querySelector('b').style.width = 0;
+        if (high - low > 0.01) zoomAll([first + low * (last - first), first + high * (last - first)]);
+      });
+      this.addEventListener('dblclick', () => zoomAll([0, 1]));
+      this.draw();
+    }
+
+    draw() {
+      const [from, to] = group(TIME).zoom, {start, span} = this;
+      const place = (time) => 100 * ((time - start) / span - from) / (to - from);  // % of the field
+      if (this.now !== now || this.zoom !== `${from} ${to}`) {
+        this.now = now;
+        this.querySelectorAll('.field i').forEach((line) => line.style.left = `${place(now)}%`);
+      }
+      if (this.zoom === `${from} ${to}`) return;
+      this.zoom = `${from} ${to}`;
+      this.classList.toggle('near', to - from < 0.3);
+      this.querySelectorAll('img').forEach(({style}) => {
+        [style.width, style.marginLeft] = [`${100 / (to - from)}%`, `${-100 * from / (to - from)}%`];
+      });
+      const times = steps(start + from * span, start + to * span).map((time) => {
+        const label = Object.assign(document.createElement('span'), {textContent: time});
+        label.style.left = `${place(time)}%`;
+        return label;
+      });
+      this.querySelectorAll('.times').forEach((axis) => axis.replaceChildren(...times.map((t) => t.cloneNode(true))));
+    }
+  });
   customElements.define('trackride-marks', class extends HTMLElement {
     connectedCallback() {
       const marks = JSON.parse(this.getAttribute('at'));

@@ -13,7 +13,8 @@ from typing import Annotated, Any, Literal
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from model.parameters import PARAMETER, PARAMETERS, Parameter, Value
+from model.parameters import PARAMETER, PARAMETERS, PART_LIMIT, Parameter, Value
+from model.points import FILE_LIMIT, PointsError, read_csv
 from model.validation import EXCLUSIVE, ConfigError, Fault, check_values, unknown_fault, wheel_positions
 from model.yaml_text import dump_yaml, parse_yaml
 
@@ -28,9 +29,10 @@ __all__ = [
     "parse_value",
     "preset_names",
     "preset_title",
+    "read_profile",
 ]
 
-SIZE_LIMIT = 1_000_000  # bytes of a configuration file
+SIZE_LIMIT = 8_000_000  # bytes of a configuration file; 10 km of profile take 5 million
 _PRESETS = resources.files("configs")
 
 
@@ -49,6 +51,13 @@ class Chassis(Section):
     mass: float = _field("vehicle.chassis.mass")
     pitch_inertia: float = _field("vehicle.chassis.pitch_inertia")
     cg_height: float = _field("vehicle.chassis.cg_height")
+
+
+class Seat(Section):
+    """The driver's, from the hull's centre of mass, in the hull's frame."""
+
+    x: float = _field("vehicle.seat.x")
+    y: float = _field("vehicle.seat.y")
 
 
 class RoadWheels(Section):
@@ -79,6 +88,12 @@ class RoadSuspension(Section):
     basis: str = _field("vehicle.road_suspension.basis")
     stiffness: float | tuple[float, ...] = _field("vehicle.road_suspension.stiffness")
     damping: float | tuple[float, ...] = _field("vehicle.road_suspension.damping")
+    progression: float = _field("vehicle.road_suspension.progression")
+    rebound_ratio: float = _field("vehicle.road_suspension.rebound_ratio")
+    bump_travel: float | None = _field("vehicle.road_suspension.bump_travel")
+    rebound_travel: float | None = _field("vehicle.road_suspension.rebound_travel")
+    stop_stiffness: float = _field("vehicle.road_suspension.stop_stiffness")
+    stop_damping: float = _field("vehicle.road_suspension.stop_damping")
 
 
 class ImaginaryWheels(Section):
@@ -104,6 +119,7 @@ class ImaginarySuspension(Section):
 
 class Vehicle(Section):
     chassis: Chassis = Chassis()
+    seat: Seat = Seat()
     road_wheels: RoadWheels = RoadWheels()
     road_arms: RoadArms = RoadArms()
     road_suspension: RoadSuspension = RoadSuspension()
@@ -147,7 +163,46 @@ class HalfRoundRoad(Section):
     radius: float = _field("road.radius")
 
 
-Road = Annotated[FlatRoad | SineRoad | HalfRoundRoad, Field(discriminator="type")]
+class TrapezoidRoad(Section):
+    type: Literal["trapezoid"] = "trapezoid"
+    position: float = _field("road.position")
+    height: float = _field("road.height")
+    top: float = _field("road.top")
+    base: float = _field("road.base")
+
+
+class StepRoad(Section):
+    type: Literal["step"] = "step"
+    position: float = _field("road.position")
+    height: float = _field("road.height")
+    ramp: float | None = _field("road.ramp")
+
+
+class RandomRoad(Section):
+    type: Literal["random"] = "random"
+    roughness_class: str = _field("road.roughness_class")
+    seed: int = _field("road.seed")
+    length: float = _field("road.length")
+
+
+class ProfileRoad(Section):
+    """`file` only says where the points came from: it was read when the configuration was loaded."""
+
+    type: Literal["profile"] = "profile"
+    file: str = _field("road.file")
+    points: str = _field("road.points")
+    start: float | None = _field("road.start")
+
+
+SimpleRoad = FlatRoad | SineRoad | HalfRoundRoad | TrapezoidRoad | StepRoad | RandomRoad | ProfileRoad
+
+
+class SumRoad(Section):
+    type: Literal["sum"] = "sum"
+    parts: tuple[Annotated[SimpleRoad, Field(discriminator="type")], ...] = _field("road.parts")
+
+
+Road = Annotated[SimpleRoad | SumRoad, Field(discriminator="type")]
 
 
 class Simulation(Section):
@@ -247,10 +302,7 @@ def config_from_dict(given: Any) -> Config:
 
 def parse_config(text: str, source: str = "") -> Config:
     """A Config from YAML text; `source` names it in messages. Raises ConfigError with all faults."""
-    try:
-        return config_from_dict(_parsed(text))
-    except ConfigError as error:
-        raise ConfigError(error.faults, source) from None
+    return _configured(text, source, None)
 
 
 def parse_value(text: str) -> Any:
@@ -260,18 +312,29 @@ def parse_value(text: str) -> Any:
 
 def dump_config(config: Config) -> str:
     """The whole configuration as YAML; parse_config gives the same one back."""
-    return dump_yaml(_nest(config.values()))
+    values = config.values()
+    if isinstance(config.road, SumRoad):
+        values["road.parts"] = tuple(part_values(part) for part in config.road.parts)
+    return dump_yaml(_nest(values))
+
+
+def part_values(road: SimpleRoad) -> dict[str, Value]:
+    """All that a file says of a road that is part of a sum, by the last word of its key."""
+    keys = {key.removeprefix("road."): PARAMETER[key] for key in PARAMETER if key.startswith("road.")}
+    values = {name: getattr(road, name) for name, parameter in keys.items() if parameter.applies_to(road.type)}
+    return {name: value for name, value in values.items() if value is not None}
 
 
 def load_config(path_or_preset: str | Path) -> Config:
-    """A Config from a preset's name or a YAML file. Raises ConfigError with all faults."""
+    """A Config from a preset's name or a YAML file, with the profiles it names. Raises ConfigError with all faults."""
     name = str(path_or_preset)
+    folder = None
     try:
         if name in preset_names():
             data = (_PRESETS / f"{name}.yaml").read_bytes()
         else:
-            with open(path_or_preset, "rb") as file:
-                data = file.read(SIZE_LIMIT + 1)
+            folder = Path(path_or_preset).parent
+            data = _read(path_or_preset, SIZE_LIMIT)
     except FileNotFoundError:
         known = ", ".join(preset_names())
         raise _text_error(f"there is no such file, nor a preset of that name ({known})", name) from None
@@ -280,9 +343,59 @@ def load_config(path_or_preset: str | Path) -> Config:
     if len(data) > SIZE_LIMIT:
         raise _text_error(f"the file is larger than {SIZE_LIMIT} bytes", name)
     try:
-        return parse_config(data.decode("utf-8-sig"), source=name)
+        return _configured(data.decode("utf-8-sig"), name, folder)
     except UnicodeDecodeError:
         raise _text_error("the file is not UTF-8 text", name) from None
+
+
+def read_profile(path: str | Path, key: str = "road.file") -> dict[str, str]:
+    """Values by dotted path of a profile in a CSV file: its name and its points. Raises ConfigError for `key`."""
+    try:
+        points = read_csv(_read(path, FILE_LIMIT))
+    except PointsError as error:
+        message = str(error)
+    except (OSError, ValueError) as error:
+        message = f"{str(path)[:200]} cannot be read: {getattr(error, 'strerror', None) or error}"
+    else:
+        return {key: str(path), f"{key.removesuffix('.file')}.points": points}
+    raise ConfigError([Fault(key, str(path), message)])
+
+
+def _read(path: str | Path, limit: int) -> bytes:
+    """A file's content, but no more than a byte over the limit."""
+    with open(path, "rb") as file:
+        return file.read(limit + 1)
+
+
+def _configured(text: str, source: str, folder: Path | None) -> Config:
+    """A Config from YAML text; profiles are read from files in the folder, if there is one."""
+    faults: list[Fault] = []
+    try:
+        given = _parsed(text)
+        if folder is not None and isinstance(given, dict):
+            _read_profiles(given.get("road"), "road", folder, faults)
+        config = config_from_dict(given)
+    except ConfigError as error:
+        faults += error.faults
+    if faults:
+        raise ConfigError(faults, source)
+    return config
+
+
+def _read_profiles(road: Any, key: str, folder: Path, faults: list[Fault]) -> None:
+    """Put the points of the files that a road names beside the names."""
+    if not isinstance(road, dict):
+        return
+    file = road.get("file")
+    if road.get("type") == "profile" and isinstance(file, str) and file and "points" not in road:
+        try:
+            road["points"] = read_profile(folder / file, f"{key}.file")[f"{key}.points"]
+        except ConfigError as error:
+            faults += error.faults
+            del road["file"]
+    parts = road.get("parts")
+    for number, part in enumerate(parts[:PART_LIMIT] if isinstance(parts, list) else []):
+        _read_profiles(part, f"{key}.parts[{number}]", folder, faults)
 
 
 def preset_names() -> list[str]:
@@ -298,10 +411,13 @@ def preset_title(name: str) -> str:
 
 def _plain(part: Any) -> Any:
     """A section given as an object, as the mapping it was made of."""
-    if not isinstance(part, Section):
-        return part
-    road = {"type": part.type} if isinstance(part, FlatRoad | SineRoad | HalfRoundRoad) else {}
-    return part.model_dump(exclude_unset=True) | road
+    if isinstance(part, SimpleRoad | SumRoad):
+        part = {"type": part.type} | {name: getattr(part, name) for name in part.model_fields_set}
+    elif isinstance(part, Section):
+        part = part.model_dump(exclude_unset=True)
+    if isinstance(part, dict) and isinstance(part.get("parts"), list | tuple):
+        part = part | {"parts": [_plain(road) for road in part["parts"]]}
+    return part
 
 
 def _nest(values: Mapping[str, Any]) -> dict[str, Any]:

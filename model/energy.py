@@ -8,6 +8,7 @@ import numpy as np
 
 from model.ride import contact_motion
 from model.road import build_road
+from model.suspension import dissipated_power, elastic
 from model.trajectory import Trajectory
 
 
@@ -75,12 +76,12 @@ def energy_balance(trajectory: Trajectory) -> EnergyBalance:
     turn_rate = v[:, system.spring_i, 2] - v[:, system.spring_j, 2]
     inertia = np.column_stack([system.mass, system.mass, system.inertia])
     kinetic = (inertia * v**2).sum(axis=(1, 2)) / 2
-    gravity = q[:, :, 1] @ system.mass * system.g
-    springs = (system.k_s / 2 * turn**2 + system.tau_0 * turn).sum(axis=1)
+    gravity = q[:, :, 1] @ system.weight
+    springs = elastic(system, turn).energy.sum(axis=1)
     ground = (system.k_n / 3 * depth**3).sum(axis=1) + (system.k_t / 2 * xi**2).sum(axis=1)
 
     drive_power = _drive_power(trajectory)
-    suspension_power = turn_rate**2 @ system.c_s
+    suspension_power = dissipated_power(system, turn, turn_rate).sum(axis=1)
     pressed_out = (load - system.k_n * depth**2) * np.where(touch.depth > 0, touch.sinking, 0.0)
     ground_power = pressed_out.sum(axis=1) + system.c_t * (xi_rate**2).sum(axis=1)
     friction_power = -(traction * (touch.slip - xi_rate)).sum(axis=1)
@@ -110,7 +111,7 @@ def load_balance(trajectory: Trajectory) -> LoadBalance:
     system = trajectory.system
     normal = contact_motion(system, build_road(trajectory.config), trajectory.q, trajectory.v).normal
     force = trajectory.normal_load * normal[..., 1] - trajectory.traction * normal[..., 0]
-    return LoadBalance(force.sum(axis=1), (trajectory.a[:, :, 1] + system.g) @ system.mass)
+    return LoadBalance(force.sum(axis=1), trajectory.a[:, :, 1] @ system.mass + system.weight.sum())
 
 
 def _drive_power(trajectory: Trajectory) -> np.ndarray:

@@ -51,12 +51,26 @@ def suspension_torques(system: System, q: np.ndarray, v: np.ndarray) -> np.ndarr
     Q_theta = np.zeros(len(q))
     for s in range(len(system.spring_i)):
         i, j = system.spring_i[s], system.spring_j[s]
-        # Eq. (1), and eq. (2) with its sign turned: τ = k (θ_i − θ_j) + c (θ̇_i − θ̇_j) + τ_0
-        tau = system.k_s[s] * (q[i, 2] - q[j, 2]) + system.c_s[s] * (v[i, 2] - v[j, 2]) + system.tau_0[s]
+        # Eq. (1), and eq. (2) with its sign turned: τ = k (θ_i − θ_j) + c (θ̇_i − θ̇_j) + τ_0; beyond the paper, k
+        # stiffens by 1 + p (θ_i − θ_j)², and c differs by direction
+        u, u_dot = q[i, 2] - q[j, 2], v[i, 2] - v[j, 2]
+        c = system.c_s[s] if u_dot >= 0.0 else system.c_rebound[s]
+        tau = system.k_s[s] * u * (1.0 + system.p[s] * u**2) + c * u_dot + system.tau_0[s]
+        if s < system.n:
+            tau += stop_torque(system, u, u_dot)
         # Eq. (3): the arm between takes the difference of both torques
         Q_theta[j] += tau
         Q_theta[i] -= tau
     return Q_theta
+
+
+def stop_torque(system: System, u: float, u_dot: float) -> float:
+    """Of a road arm's bump and rebound stops at θ_i − θ_j = u, N m; not in the paper. A stop pushes, it never pulls."""
+    if u > system.bump:
+        return max(0.0, system.k_stop * (u - system.bump) + system.c_stop * u_dot)
+    if u < system.rebound:
+        return min(0.0, system.k_stop * (u - system.rebound) + system.c_stop * u_dot)
+    return 0.0
 
 
 def nearest_point(road: Road, centre: np.ndarray) -> np.ndarray:
@@ -156,6 +170,15 @@ def acceleration_side(system: System, q: np.ndarray, v: np.ndarray, t: float) ->
     return -np.concatenate(quadratic) - 2 * system.alpha * C_dot - system.beta**2 * C
 
 
+def accelerations(system: System, C_q: np.ndarray, Q: np.ndarray, gamma: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """q̈ (B, 3) and λ of eq. (15), [M C_qᵀ; C_q 0] {q̈; λ} = {Q; γ}, for any mechanism, closed loops included."""
+    M = np.diag(np.column_stack([system.mass, system.mass, system.inertia]).ravel())
+    rows = len(gamma)
+    augmented = np.block([[M, C_q.T], [C_q, np.zeros((rows, rows))]])
+    solution = np.linalg.solve(augmented, np.concatenate([Q.ravel(), gamma]))
+    return solution[: Q.size].reshape(Q.shape), solution[Q.size :]
+
+
 def drive(system: System, v_x: float, int_e: float) -> tuple[float, float]:
     """Cruise control (section 2.2): drive force F, N, and d/dt ∫e; the integral stands still while F is limited."""
     e = system.v_ref - v_x
@@ -170,7 +193,7 @@ def rates(system: System, road: Road, t: float, state: State) -> Rates:
     q, v, xi, int_e = state
     bodies, wheels = len(q), system.wheel
     Q = np.zeros((bodies, 3))
-    Q[:, 1] -= system.mass * system.g
+    Q[:, 1] -= system.weight
     Q[:, 2] += suspension_torques(system, q, v)
 
     f_n, f_t, xi_dot = np.zeros(len(wheels)), np.zeros(len(wheels)), np.zeros(len(wheels))
@@ -187,14 +210,7 @@ def rates(system: System, road: Road, t: float, state: State) -> Rates:
             Q[wheels, 2] -= system.r * F * f_n / f_n.sum()
             Q[0, 2] += system.r * F
 
-    # Eq. (15): [M C_qᵀ; C_q 0] {q̈; λ} = {Q; γ}
-    M = np.diag(np.column_stack([system.mass, system.mass, system.inertia]).ravel())
-    C_q = jacobian(system, q)
-    gamma = acceleration_side(system, q, v, t)
-    rows = len(gamma)
-    augmented = np.block([[M, C_q.T], [C_q, np.zeros((rows, rows))]])
-    solution = np.linalg.solve(augmented, np.concatenate([Q.ravel(), gamma]))
-    v_dot, lam = solution[: q.size].reshape(bodies, 3), solution[q.size :]
+    v_dot, lam = accelerations(system, jacobian(system, q), Q, acceleration_side(system, q, v, t))
     if system.prescribed:
         F = -lam[-1]
     return Rates(v_dot, xi_dot, int_e_dot, lam, f_n, f_t, F)

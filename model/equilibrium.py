@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from model.suspension import elastic
 from model.vehicle import System
 
 FORCE_TOLERANCE = 1e-6  # N (or N m): what the rest pose must fulfil; rounding leaves up to half of it in heavy vehicles
@@ -36,7 +37,7 @@ def rest_pose(system: System) -> tuple[np.ndarray, np.ndarray]:
     spring = np.zeros((len(system.k_s), size))  # θ_i − θ_j
     spring[np.arange(len(spring)), column[system.spring_i]] += 1.0
     spring[np.arange(len(spring)), column[system.spring_j]] -= 1.0
-    weight = system.mass * system.g
+    weight = system.weight
     touching = np.zeros(B, dtype=bool)
     touching[system.wheel] = True
 
@@ -48,9 +49,10 @@ def rest_pose(system: System) -> tuple[np.ndarray, np.ndarray]:
         sink = np.where(touching, np.maximum(system.r - y, 0.0), 0.0)
         force = weight - system.k_n * sink**2
         turn = spring @ z
-        V = weight @ y + system.k_n / 3 * (sink**3).sum() + (system.k_s / 2 * turn**2 + system.tau_0 * turn).sum()
-        gradient = force @ G + (system.k_s * turn + system.tau_0) @ spring
-        hessian = (G.T * (2 * system.k_n * sink)) @ G + (spring.T * system.k_s) @ spring
+        held = elastic(system, turn)
+        V = weight @ y + system.k_n / 3 * (sink**3).sum() + held.energy.sum()
+        gradient = force @ G + held.torque @ spring
+        hessian = (G.T * (2 * system.k_n * sink)) @ G + (spring.T * held.stiffness) @ spring
         hessian[1:, 1:] += np.diag(force @ bend)
         return float(V), gradient, hessian, sink
 

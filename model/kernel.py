@@ -104,6 +104,19 @@ def cos_sin(angle):
 
 
 @inlined
+def _beyond_linear(system, i, u, u_dot):
+    """What a road arm's progressive spring, rebound damping and stops add to eq. (1)."""
+    tau = system.k_s[i] * system.p[i] * u * u * u
+    if u_dot < 0.0:
+        tau += (system.c_rebound[i] - system.c_s[i]) * u_dot
+    if u > system.bump:
+        tau += max(0.0, system.k_stop * (u - system.bump) + system.c_stop * u_dot)
+    elif u < system.rebound:
+        tau += min(0.0, system.k_stop * (u - system.rebound) + system.c_stop * u_dot)
+    return tau
+
+
+@inlined
 def _fold_arm(m, I, p_x, p_y, w_x, w_y, K_xx, K_xy, K_yy, b_x, b_y, F_y, tau):
     """An arm that carries (K, b = K γ + f) at w, seen from its pivot p (both from its centre of mass).
 
@@ -178,7 +191,7 @@ def contact_forces(system, road, y, dy, work):
 @inlined
 def rates(system, road, t, y, dy, work):
     """dy/dt of the flat state at time t; leaves loads, tractions and drive force in work."""
-    n, m, g = system.n, system.m, system.g
+    n, m = system.n, system.m
     B = len(system.mass)
     two_alpha, beta2 = 2.0 * system.alpha, system.beta * system.beta
     x, h, theta = y[:B], y[B : 2 * B], y[2 * B : 3 * B]
@@ -194,7 +207,10 @@ def rates(system, road, t, y, dy, work):
         tau_chassis = system.r * work.F[0]
     for i in range(n):
         arm = 1 + i
-        tau = system.k_s[i] * (theta[0] - theta[arm]) + system.c_s[i] * (omega[0] - omega[arm]) + system.tau_0[i]
+        u, u_dot = theta[0] - theta[arm], omega[0] - omega[arm]
+        tau = system.k_s[i] * u + system.c_s[i] * u_dot + system.tau_0[i]
+        if not system.linear:
+            tau += _beyond_linear(system, i, u, u_dot)
         work.tau[i] = tau
         tau_chassis -= tau
 
@@ -222,9 +238,9 @@ def rates(system, road, t, y, dy, work):
         gamma_y = w * w * w_y - two_alpha * C_y_dot - beta2 * C_y
         m_v, m_l = system.mass[end], system.mass[link]
         b_x = m_v * gamma_x + work.wheel[0, n + i]
-        b_y = m_v * gamma_y + work.wheel[1, n + i] - m_v * g
+        b_y = m_v * gamma_y + work.wheel[1, n + i] - system.weight[end]
         K_xx, K_xy, K_yy, f_x, f_y, e_x, e_y, T = _fold_arm(
-            m_l, system.inertia[link], p_x, p_y, w_x, w_y, m_v, 0.0, m_v, b_x, b_y, -m_l * g, tau
+            m_l, system.inertia[link], p_x, p_y, w_x, w_y, m_v, 0.0, m_v, b_x, b_y, -system.weight[link], tau
         )
         _remember(work.arm[n + i], p_x, p_y, w_x, w_y, gamma_x, gamma_y, e_x, e_y, T, K_xx, K_xy, K_yy, f_x, f_y)
 
@@ -233,12 +249,12 @@ def rates(system, road, t, y, dy, work):
     w0 = omega[0]
     M_xx, M_xy, M_yy = system.mass[0], 0.0, system.mass[0]
     M_xt, M_yt, M_tt = 0.0, 0.0, system.inertia[0]
-    Q_x, Q_y, Q_t = 0.0, -system.mass[0] * g, tau_chassis
+    Q_x, Q_y, Q_t = 0.0, -system.weight[0], tau_chassis
     for i in range(n):
         arm, wheel = 1 + i, 1 + n + i
         m_w, m_a = system.mass[wheel], system.mass[arm]
         K_xx, K_xy, K_yy = m_w, 0.0, m_w
-        f_x, f_y = work.wheel[0, i], work.wheel[1, i] - m_w * g
+        f_x, f_y = work.wheel[0, i], work.wheel[1, i] - system.weight[wheel]
         if i < m:
             link = 1 + 2 * n + i
             held = work.arm[n + i]
@@ -267,7 +283,7 @@ def rates(system, road, t, y, dy, work):
         b_x = K_xx * gamma_x + K_xy * gamma_y + f_x
         b_y = K_xy * gamma_x + K_yy * gamma_y + f_y
         K_xx, K_xy, K_yy, f_x, f_y, e_x, e_y, T = _fold_arm(
-            m_a, system.inertia[arm], p_x, p_y, w_x, w_y, K_xx, K_xy, K_yy, b_x, b_y, -m_a * g, work.tau[i]
+            m_a, system.inertia[arm], p_x, p_y, w_x, w_y, K_xx, K_xy, K_yy, b_x, b_y, -system.weight[arm], work.tau[i]
         )
         held = work.arm[i]
         _remember(held, p_x, p_y, w_x, w_y, gamma_x, gamma_y, e_x, e_y, T, K_xx, K_xy, K_yy, f_x, f_y)
@@ -339,7 +355,7 @@ def _back_out(held, A_x, A_y, arm, wheel, a_x, a_y, omega_dot):
 @compiled
 def multipliers(system, dy, work, lam):
     """λ (rows of C) from the accelerations that `rates` left in dy: Newton's law from the leaves inwards."""
-    n, m, g = system.n, system.m, system.g
+    n, m = system.n, system.m
     B = len(system.mass)
     a_x, a_y = dy[3 * B : 4 * B], dy[4 * B : 5 * B]
     sum_x = 0.0
@@ -349,24 +365,33 @@ def multipliers(system, dy, work, lam):
         if i < m:
             link, end = 1 + 2 * n + i, 1 + 2 * n + m + i
             l_x = system.mass[end] * a_x[end] - work.wheel[0, n + i]
-            l_y = system.mass[end] * (a_y[end] + g) - work.wheel[1, n + i]
+            l_y = system.mass[end] * a_y[end] + system.weight[end] - work.wheel[1, n + i]
             row = 2 * (2 * n + m + i)
             lam[row], lam[row + 1] = l_x, l_y
             l_x += system.mass[link] * a_x[link]
-            l_y += system.mass[link] * (a_y[link] + g)
+            l_y += system.mass[link] * a_y[link] + system.weight[link]
             row = 2 * (2 * n + i)
             lam[row], lam[row + 1] = l_x, l_y
         l_x += system.mass[wheel] * a_x[wheel] - work.wheel[0, i]
-        l_y += system.mass[wheel] * (a_y[wheel] + g) - work.wheel[1, i]
+        l_y += system.mass[wheel] * a_y[wheel] + system.weight[wheel] - work.wheel[1, i]
         row = 2 * (n + i)
         lam[row], lam[row + 1] = l_x, l_y
         l_x += system.mass[arm] * a_x[arm]
-        l_y += system.mass[arm] * (a_y[arm] + g)
+        l_y += system.mass[arm] * a_y[arm] + system.weight[arm]
         lam[2 * i], lam[2 * i + 1] = l_x, l_y
         sum_x += l_x
     if system.prescribed:
         lam[-1] = -system.mass[0] * a_x[0] - sum_x
         work.F[0] = -lam[-1]
+
+
+@inlined
+def _turned(angle, u):
+    """u turned by an angle; wheels, jointed at their centres (u = 0), may have turned far."""
+    if u[0] == 0.0 and u[1] == 0.0:
+        return 0.0, 0.0
+    cos, sin = cos_sin(angle)
+    return cos * u[0] - sin * u[1], sin * u[0] + cos * u[1]
 
 
 @compiled
@@ -376,11 +401,9 @@ def constraint_residual(system, t, y):
     worst = 0.0
     for joint in range(len(system.joint_i)):
         i, j = system.joint_i[joint], system.joint_j[joint]
-        u_i, u_j = system.u_i[joint], system.u_j[joint]
-        c_i, s_i = np.cos(y[2 * B + i]), np.sin(y[2 * B + i])
-        c_j, s_j = np.cos(y[2 * B + j]), np.sin(y[2 * B + j])
-        C_x = y[i] + c_i * u_i[0] - s_i * u_i[1] - y[j] - c_j * u_j[0] + s_j * u_j[1]
-        C_y = y[B + i] + s_i * u_i[0] + c_i * u_i[1] - y[B + j] - s_j * u_j[0] - c_j * u_j[1]
+        i_x, i_y = _turned(y[2 * B + i], system.u_i[joint])
+        j_x, j_y = _turned(y[2 * B + j], system.u_j[joint])
+        C_x, C_y = y[i] + i_x - y[j] - j_x, y[B + i] + i_y - y[B + j] - j_y
         worst = max(worst, abs(C_x), abs(C_y))
     if system.prescribed:
         worst = max(worst, abs(y[0] - system.x_0 - system.v_ref * t))

@@ -7,13 +7,16 @@ format (SI unless the key names another unit). The order of rows is the order of
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
-Kind = Literal["number", "integer", "choice", "flag", "list", "text"]
-Value = float | int | str | bool | tuple[float, ...] | None
+Kind = Literal["number", "integer", "choice", "flag", "list", "text", "points", "parts"]
+Value = float | int | str | bool | tuple[Any, ...] | None  # tuples hold numbers, or roads that make up a sum
 
 WHEEL_COUNT = (2, 20)  # road wheels a side; also the length of a list with one value for each
+PART_LIMIT = 10  # roads in a sum
+STEEPEST = math.tan(math.radians(85))  # slope of a road's faces: none is steeper
 
 
 @dataclass(frozen=True)
@@ -67,8 +70,17 @@ class Parameter:
             "flag": "true or false",
             "list": f"a list of {WHEEL_COUNT[0]} to {WHEEL_COUNT[1]} numbers {reach}, front wheel first",
             "text": f"a text of at most {self.high:g} printable characters",
+            "points": "points x y, x y, … in m, x growing",
+            "parts": f"a list of at most {PART_LIMIT} roads, each with its type and keys, none of them a sum",
         }[self.kind]
         return words + (", or a list of such numbers, front wheel first" if self.per_wheel else "")
+
+    def slider(self, value: float) -> tuple[float, float, float]:
+        """Ends and step of a slider for vehicles like the one with this value: a robot's are a tenth or less."""
+        scale = 1.0
+        while 0.0 < value < scale * self.slider_low:
+            scale /= 10
+        return max(scale * self.slider_low, self.low), scale * self.slider_high, scale * self.step
 
     def torsional(self) -> Parameter:
         """The same as a rate of the torsion spring itself; what is no rate at the wheel stays as it is."""
@@ -97,12 +109,15 @@ ROAD, DRIVE, SOLVER, NOTES = "Road", "Drive", "Solver", "Notes"
 GROUPS = (SUSPENSION, TRACK, VEHICLE, CONTACT, ROAD, DRIVE, SOLVER, NOTES)
 
 INTEGRATORS = (
-    "dormand-prince", "rk4", "scipy-rk45", "scipy-dop853", "scipy-radau", "scipy-lsoda", "scipy-bdf",
+    "stretched-rk43", "dormand-prince", "rk4", "scipy-rk45", "scipy-dop853", "scipy-radau", "scipy-lsoda", "scipy-bdf",
 )  # fmt: skip
+ROADS = ("flat", "sine", "half_round", "trapezoid", "step", "random", "profile", "sum")
 KILO_N_PER_M, KILO_N_S_PER_M, MILLIMETRES = ("kN/m", 1e-3), ("kN s/m", 1e-3), ("mm", 1e3)
-TORSIONAL = {  # unit of a rate at the wheel -> unit and shown unit of the rate about the joint
+# Unit of a rate at the wheel -> unit and shown unit of the rate about the joint
+TORSIONAL: dict[str, tuple[str, tuple[str, float] | None]] = {
     "N/m": ("N m/rad", ("kN m/rad", 1e-3)),
     "N s/m": ("N m s/rad", ("kN m s/rad", 1e-3)),
+    "1/m²": ("1/rad²", None),
 }
 
 # fmt: off
@@ -115,24 +130,32 @@ PARAMETERS: tuple[Parameter, ...] = (
         group=NOTES, source=OURS, kind="text",
         description="What this configuration is, in a sentence or two."),
 
-    Parameter("vehicle.chassis.mass", "Hull mass", "m_c", "kg", 5125.0, 100, 100000, 1000, 20000, 25,
+    Parameter("vehicle.chassis.mass", "Hull mass", "m_c", "kg", 5125.0, 1, 100000, 1000, 20000, 25,
         group=VEHICLE, source=PAPER_TABLE,
         description="Sprung mass carried by one side's wheels: half of the hull.",
         growth="Road wheels carry more, the imaginary wheels' share falls, and the hull bounces and pitches more "
         "slowly."),
-    Parameter("vehicle.chassis.pitch_inertia", "Pitch inertia", "J_c", "kg m²", 14630.0, 10, 1e7, 2000, 60000, 10,
+    Parameter("vehicle.chassis.pitch_inertia", "Pitch inertia", "J_c", "kg m²", 14630.0, 0.001, 1e7, 2000, 60000, 10,
         group=VEHICLE, source=PAPER_TABLE,
         description="Moment of inertia of the half hull about its centre of mass.",
         growth="The hull pitches more slowly and for longer; on the paper's road it then pitches much further."),
-    Parameter("vehicle.chassis.cg_height", "Centre of mass", "h_cg", "m", 0.95, 0.1, 5, 0.4, 2, 0.01,
+    Parameter("vehicle.chassis.cg_height", "Centre of mass", "h_cg", "m", 0.95, 0.02, 5, 0.4, 2, 0.01,
         group=VEHICLE, source=ASSUMED,
         description="Height of the hull's centre of mass above flat ground in the design pose.",
         growth="Driving and braking forces tip the hull more, so it pitches further."),
+    Parameter("vehicle.seat.x", "Seat, forward", "", "m", 1.5, -20, 20, -3, 3, 0.05,
+        group=VEHICLE, source=ASSUMED,
+        description="How far ahead of the hull's centre of mass the driver sits; the ride at the seat is judged there.",
+        growth="The driver sits further forward and feels more of the hull's pitching."),
+    Parameter("vehicle.seat.y", "Seat, up", "", "m", 0.1, -5, 5, -1, 2, 0.05,
+        group=VEHICLE, source=ASSUMED,
+        description="How far above the hull's centre of mass the driver sits.",
+        growth="The driver sits higher: pitching shakes more fore and aft; up and down nothing changes."),
     Parameter("vehicle.road_wheels.count", "Road wheels", "n", "", 6, *WHEEL_COUNT, *WHEEL_COUNT, 1,
         group=VEHICLE, source=PAPER_TABLE, kind="integer",
         description="Number of road wheels on one side, evenly spaced.",
         growth="The vehicle gets longer, each wheel carries less, and the ride on waves gets smoother."),
-    Parameter("vehicle.road_wheels.spacing", "Wheel spacing", "s", "m", 0.7, 0.1, 5, 0.4, 1.5, 0.005,
+    Parameter("vehicle.road_wheels.spacing", "Wheel spacing", "s", "m", 0.7, 0.05, 5, 0.4, 1.5, 0.005,
         group=VEHICLE, source=PAPER_TABLE,
         description="Distance between neighbouring road wheels; Table 1's wheel base of 3.5 m has five such gaps.",
         growth="The wheel base gets longer: on waves the hull heaves and pitches less."),
@@ -186,6 +209,34 @@ PARAMETERS: tuple[Parameter, ...] = (
         group=SUSPENSION, source=PAPER_TABLE, shown=KILO_N_S_PER_M, per_wheel=True,
         description="Damping between hull and each road arm, at the wheel.",
         growth="Bounce and pitch die away sooner, but sharp obstacles hit the hull harder."),
+    Parameter("vehicle.road_suspension.progression", "Progression", "p", "1/m²", 0.0, 0, 10000, 0, 200, 1,
+        group=SUSPENSION, source=OURS,
+        description="How much the spring stiffens with its deflection z from the design pose: its force is "
+        "k_s z (1 + p z²); 0 is the paper's linear spring.",
+        growth="Large deflections meet a harder spring, so that arms turn less far; small ones feel no difference."),
+    Parameter("vehicle.road_suspension.rebound_ratio", "Rebound ratio", "", "", 1.0, 0, 20, 0, 5, 0.05,
+        group=SUSPENSION, source=OURS,
+        description="Damping while a wheel moves down in the hull, as a multiple of the damping while it moves up; "
+        "1 is the paper's damper.",
+        growth="Wheels fall into dips more slowly and the hull is drawn down over a row of bumps."),
+    Parameter("vehicle.road_suspension.bump_travel", "Bump stop at", "", "m", None, 0.01, 2, 0.03, 0.4, 0.005,
+        group=SUSPENSION, source=OURS, shown=MILLIMETRES, optional=True,
+        description="Travel of a wheel upwards in the hull, from the design pose, at which its arm meets the bump "
+        "stop; left out: no stop, as in the paper.",
+        growth="Wheels can rise further before the stop hits the hull."),
+    Parameter("vehicle.road_suspension.rebound_travel", "Rebound stop at", "", "m", None, 0.01, 2, 0.03, 0.4, 0.005,
+        group=SUSPENSION, source=OURS, shown=MILLIMETRES, optional=True,
+        description="Travel of a wheel downwards in the hull, from the design pose, at which its arm meets the "
+        "rebound stop; left out: no stop, as in the paper.",
+        growth="Wheels can follow the ground further down before they are held."),
+    Parameter("vehicle.road_suspension.stop_stiffness", "Stop stiffness", "", "N/m", 5e5, 100, 1e9, 1e4, 5e6, 1e4,
+        group=SUSPENSION, source=ASSUMED, shown=KILO_N_PER_M,
+        description="Stiffness of both stops, at the wheel, on top of the spring.",
+        growth="A stop gives way less and hits harder."),
+    Parameter("vehicle.road_suspension.stop_damping", "Stop damping", "", "N s/m", 1e4, 0, 1e7, 0, 1e5, 500,
+        group=SUSPENSION, source=ASSUMED, shown=KILO_N_S_PER_M,
+        description="Damping of both stops, at the wheel; a stop never pulls.",
+        growth="A stop throws the wheel back less, and its first blow is harder."),
     Parameter("vehicle.imaginary_wheels.enabled", "Imaginary wheels", "", "", True,
         group=TRACK, source=OURS, kind="flag",
         description="Whether imaginary wheels stand in for the track; without them only road wheels carry."),
@@ -197,7 +248,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         group=TRACK, source=ASSUMED, optional=True,
         description="Moment of inertia of one imaginary wheel about its axle; left out: a uniform disc, m r²/2.",
         growth="Speed and drive force swing a little less; loads hardly change."),
-    Parameter("vehicle.imaginary_arms.mass", "Link mass", "", "kg", 5.0, 0.1, 1000, 1, 50, 0.5,
+    Parameter("vehicle.imaginary_arms.mass", "Link mass", "", "kg", 5.0, 0.001, 1000, 1, 50, 0.5,
         group=TRACK, source=ASSUMED,
         description="Mass of the link from a road wheel to the imaginary wheel behind it.",
         growth="A little more weight rests on the ground with each imaginary wheel."),
@@ -274,8 +325,10 @@ PARAMETERS: tuple[Parameter, ...] = (
         growth="Steeper roads can be climbed without losing speed."),
 
     Parameter("road.type", "Road type", "", "", "sine",
-        group=ROAD, source=PAPER_TEXT, kind="choice", choices=("flat", "sine", "half_round"),
-        description="flat: level ground; sine: waves without end; half_round: one round obstacle on level ground."),
+        group=ROAD, source=PAPER_TEXT, kind="choice", choices=ROADS,
+        description="flat: level ground; sine: waves without end; half_round, trapezoid: one obstacle on level "
+        "ground; step: a kerb up to a higher level; random: rough ground of a class of ISO 8608; profile: measured "
+        "points; sum: several roads on top of each other."),
     Parameter("road.amplitude", "Amplitude", "A", "m", 0.1, 0, 0.5, 0, 0.3, 0.005,
         group=ROAD, source=PAPER_TEXT, shown=MILLIMETRES, roads=("sine",), what_if=True,
         description="Height of a crest above the mean of the road (the paper's 100 mm).",
@@ -285,27 +338,61 @@ PARAMETERS: tuple[Parameter, ...] = (
         description="Distance from crest to crest.",
         growth="Waves longer than the vehicle lift it more gently, as a whole; worst are those that meet its bounce "
         "or pitch frequency."),
-    Parameter("road.start", "First wave", "x_s", "m", None, -50, 1000, 2, 50, 0.1,
-        group=ROAD, source=OURS, roads=("sine",), optional=True,
-        description="Where the waves begin, ahead of the centre of mass at the start; left out: 1 m ahead of the "
-        "first wheel.",
-        growth="The vehicle drives on level ground for longer."),
-    Parameter("road.ramp", "Run-in", "ℓ", "m", None, 0, 1000, 0.5, 50, 0.1,
-        group=ROAD, source=OURS, roads=("sine",), optional=True,
-        description="Stretch over which the waves grow to their full height; left out: one wavelength.",
-        growth="The waves set in more gently."),
     Parameter("road.position", "Obstacle at", "", "m", 4.0, -50, 10000, 2, 50, 0.1,
-        group=ROAD, source=OURS, roads=("half_round",),
-        description="Where the top of the obstacle lies, ahead of the centre of mass at the start.",
+        group=ROAD, source=OURS, roads=("half_round", "trapezoid", "step"),
+        description="Where the middle of the obstacle lies, or a step's foot, ahead of the centre of mass at the "
+        "start.",
         growth="The vehicle meets the obstacle later."),
     Parameter("road.height", "Obstacle height", "", "m", 0.1, 0.001, 2, 0.02, 0.4, 0.01,
-        group=ROAD, source=OURS, shown=MILLIMETRES, roads=("half_round",),
+        group=ROAD, source=OURS, shown=MILLIMETRES, roads=("half_round", "trapezoid", "step"),
         description="Height of the obstacle's top above the ground.",
         growth="Wheels and hull are thrown up harder."),
     Parameter("road.radius", "Obstacle radius", "", "m", 0.2, 0.01, 20, 0.05, 2, 0.01,
         group=ROAD, source=OURS, roads=("half_round",),
         description="Radius of the circle whose part above ground is the obstacle: at least its height.",
         growth="At the same height the obstacle is longer and its edges are flatter: loads peak lower."),
+    Parameter("road.top", "Length of top", "", "m", 0.5, 0.01, 1000, 0.1, 10, 0.1,
+        group=ROAD, source=OURS, roads=("trapezoid",),
+        description="Length of the trapezoid's level top.",
+        growth="The vehicle stays up for longer; what it goes through at either face is further apart."),
+    Parameter("road.base", "Length of base", "", "m", 1.5, 0.01, 2000, 0.1, 20, 0.1,
+        group=ROAD, source=OURS, roads=("trapezoid",),
+        description="Length of the trapezoid on the ground, at least that of its top; its faces are never steeper "
+        "than 85°.",
+        growth="The faces are less steep: loads peak lower."),
+    Parameter("road.roughness_class", "Roughness class", "", "", "C",
+        group=ROAD, source=OURS, roads=("random",), kind="choice", choices=tuple("ABCDEFGH"),
+        description="Class of ISO 8608, from A, a very good road, over C, a poor one, to E to H, ground without a "
+        "road; B, D, F, G lie between. Heights double from class to class."),
+    Parameter("road.seed", "Seed", "", "", 1, 0, 999999, 0, 1000, 1,
+        group=ROAD, source=OURS, roads=("random",), kind="integer",
+        description="Number of the random road: the same number gives the same road anywhere.",
+        growth="It is another road of the same roughness."),
+    Parameter("road.length", "Repeats after", "", "m", 200.0, 20, 10000, 20, 1000, 10,
+        group=ROAD, source=OURS, roads=("random",),
+        description="Length of random road, after which it repeats itself.",
+        growth="It takes longer until the same bumps come again; it is another road of the same roughness."),
+    Parameter("road.file", "Profile file", "", "", "", 0, 500,
+        group=ROAD, source=OURS, roads=("profile",), kind="text",
+        description="CSV file of the profile: two columns, x and y in m; found from the folder of the configuration "
+        "that names it. Beside points it only says where these came from."),
+    Parameter("road.points", "Profile", "", "", "0 0, 6 0, 7 0.1, 8 0.05, 10 0.05",
+        group=ROAD, source=OURS, roads=("profile",), kind="points",
+        description="The profile itself: x y, x y, … in m, at most 200001 points; what the file says, once it has "
+        "been read."),
+    Parameter("road.parts", "Parts", "", "", (),
+        group=ROAD, source=OURS, roads=("sum",), kind="parts",
+        description="The roads whose heights are added up: a list, each with its type and keys."),
+    Parameter("road.start", "Start of road", "x_s", "m", None, -50, 1000, 2, 50, 0.1,
+        group=ROAD, source=OURS, roads=("sine", "profile"), optional=True,
+        description="Where the waves begin, ahead of the centre of mass at the start, or the profile's first point "
+        "lies, at ground level. Left out: 1 m ahead of the first wheel; for a profile, where its points say.",
+        growth="The vehicle drives on level ground for longer."),
+    Parameter("road.ramp", "Run-in", "ℓ", "m", None, 0, 1000, 0.5, 50, 0.1,
+        group=ROAD, source=OURS, roads=("sine", "step"), optional=True,
+        description="Stretch over which the waves grow to their full height, or a step rises. Left out: one "
+        "wavelength; for a step, as steep as a face can be, 85°.",
+        growth="The waves, or the step, set in more gently."),
 
     Parameter("simulation.duration", "Duration", "", "s", 10.0, 0.1, 600, 1, 60, 0.5,
         group=SOLVER, source=OURS,
@@ -315,10 +402,11 @@ PARAMETERS: tuple[Parameter, ...] = (
         group=SOLVER, source=OURS,
         description="Stored samples for each second.",
         growth="Short peaks show more fully; files get larger. The motion stays the same."),
-    Parameter("simulation.integrator", "Integrator", "", "", "dormand-prince",
+    Parameter("simulation.integrator", "Integrator", "", "", "stretched-rk43",
         group=SOLVER, source=OURS, kind="choice", choices=INTEGRATORS,
-        description="dormand-prince: order 5(4), chooses its own steps; rk4: order 4, fixed step; scipy-…: SciPy's "
-        "methods, slower, for comparison."),
+        description="stretched-rk43: order 4(3), chooses its own steps, longer ones than others in the stiff contacts; "
+        "dormand-prince: order 5(4), chooses its own steps; rk4: order 4, fixed step; scipy-…: SciPy's methods, "
+        "slower, for comparison."),
     Parameter("simulation.step", "Fixed step", "h", "s", 0.001, 1e-6, 0.1, 0.0001, 0.005, 0.0001,
         group=SOLVER, source=OURS, shown=("ms", 1000),
         description="Step of the rk4 integrator; the others choose their own.",
@@ -361,6 +449,8 @@ def parameter_table() -> str:
                 shown = "–"
             case bool():
                 shown = str(default).lower()
+            case tuple():
+                shown = "none"
             case float() | int():
                 shown = f"{number_text(default)} {parameter.unit}".strip()
             case _:

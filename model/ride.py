@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
+from model.comfort import Comfort, ride_comfort
 from model.config import SineRoad
+from model.equilibrium import NoEquilibriumError, rest_pose
 from model.road import Road, build_road
+from model.signals import seat, steady
 from model.trajectory import Trajectory, wheel_names
 from model.vehicle import System
 
@@ -26,6 +30,7 @@ class Summary:
     load_min: np.ndarray  # (W,) N
     load_mean: np.ndarray  # (W,) N
     load_max: np.ndarray  # (W,) N
+    load_coefficient: np.ndarray  # (W,) dynamic load coefficient, 0…; see there
     air_time: np.ndarray  # (W,) s without load
     travel_down: np.ndarray  # (n,) m, lowest wheel centre relative to the hull, from the static pose; ≤ 0
     travel_up: np.ndarray  # (n,) m, highest; ≥ 0
@@ -33,6 +38,7 @@ class Summary:
     acceleration_peak: float  # m/s², the largest in either direction
     pitch_low: float  # rad; the nose is up where it is positive
     pitch_high: float  # rad
+    seat: Comfort  # of the driver
     imaginary_share: float  # mean over time of Σ load of imaginary wheels / Σ load of all
     drift: float  # m, by which joints were apart at worst
     real_time_factor: float  # simulated time / computing time
@@ -48,14 +54,17 @@ class _Figure(NamedTuple):
 
 ACCELERATION_RMS = _Figure("Vertical acceleration, rms", "m/s²", 1e-3)
 ACCELERATION_PEAK = _Figure("Vertical acceleration, peak", "m/s²", 1e-3)
+WEIGHTED = _Figure("Weighted acceleration at the seat", "m/s²", 1e-3)
+POWER = _Figure("Absorbed power at the seat", "W", 1e-3)
 PITCH = _Figure("Pitch, peak to peak", "°", 1e-3)
 IMAGINARY_SHARE = _Figure("Load on imaginary wheels", "%", 1e-2)
 LOAD_PEAK = _Figure("Peak load", "kN", 1e-3)
 LOAD_RMS = _Figure("Load, rms", "kN", 1e-3)
+LOAD_COEFFICIENT = _Figure("Dynamic load coefficient", "%", 1e-2)
 TRAVEL = _Figure("Suspension travel", "mm", 1e-2)
 AIR_TIME = _Figure("Time in the air", "s", 1e-9)
-HULL_FIGURES = (ACCELERATION_RMS, ACCELERATION_PEAK, PITCH, IMAGINARY_SHARE)
-WHEEL_FIGURES = (LOAD_PEAK, LOAD_RMS, TRAVEL, AIR_TIME)
+HULL_FIGURES = (ACCELERATION_RMS, ACCELERATION_PEAK, WEIGHTED, POWER, PITCH, IMAGINARY_SHARE)
+WHEEL_FIGURES = (LOAD_PEAK, LOAD_RMS, LOAD_COEFFICIENT, TRAVEL, AIR_TIME)
 
 
 @dataclass(frozen=True)
@@ -122,6 +131,7 @@ def summary(trajectory: Trajectory) -> Summary:
         load_min=load.min(axis=0),
         load_mean=load.mean(axis=0),
         load_max=load.max(axis=0),
+        load_coefficient=dynamic_load_coefficient(trajectory),
         air_time=(load <= 0).sum(axis=0) / trajectory.config.simulation.output_rate,
         travel_down=travel.min(axis=0),
         travel_up=travel.max(axis=0),
@@ -129,6 +139,7 @@ def summary(trajectory: Trajectory) -> Summary:
         acceleration_peak=float(np.abs(acceleration).max()),
         pitch_low=float(pitch.min()),
         pitch_high=float(pitch.max()),
+        seat=ride_comfort(trajectory, seat(trajectory.config)),
         imaginary_share=imaginary_share(trajectory),
         drift=float(trajectory.constraint_residual.max()),
         real_time_factor=float(trajectory.t[-1]) / trajectory.statistics.seconds,
@@ -136,12 +147,17 @@ def summary(trajectory: Trajectory) -> Summary:
 
 
 def suspension_travel(trajectory: Trajectory) -> np.ndarray:
-    """(N, n) m: rise of each road wheel's centre in the hull's frame, from the static pose at t = 0."""
-    system = trajectory.system
-    chassis = trajectory.q[:, system.chassis, None]
-    x, y = np.moveaxis(trajectory.q[:, system.road_wheels, :2] - chassis[..., :2], 2, 0)
+    """(N, n) m: rise of each road wheel's centre in the hull's frame, from the static pose: that at t = 0."""
+    system, q = trajectory.system, trajectory.q
+    if trajectory.t[0] > 0:  # a stretch of a drive, whose parameters may have changed since its start
+        static = system.q_design
+        with suppress(NoEquilibriumError):
+            static = rest_pose(system)[0]
+        q = np.concatenate([static[None], q])
+    chassis = q[:, system.chassis, None]
+    x, y = np.moveaxis(q[:, system.road_wheels, :2] - chassis[..., :2], 2, 0)
     height = np.cos(chassis[..., 2]) * y - np.sin(chassis[..., 2]) * x
-    return height - height[0]
+    return height[-len(trajectory.t) :] - height[0]
 
 
 def imaginary_share(trajectory: Trajectory) -> float:
@@ -150,6 +166,15 @@ def imaginary_share(trajectory: Trajectory) -> float:
     imaginary = trajectory.normal_load[:, trajectory.system.n :].sum(axis=1)
     grounded = total > 0
     return float(np.mean(imaginary[grounded] / total[grounded])) if grounded.any() else 0.0
+
+
+def dynamic_load_coefficient(trajectory: Trajectory) -> np.ndarray:
+    """(W,) standard deviation of each wheel's load over the steady part of a run / its load at rest (Sweatman 1983).
+
+    0 where the load does not change; NaN for a wheel without load at rest.
+    """
+    static = np.where(trajectory.static_load > 0, trajectory.static_load, np.nan)
+    return trajectory.normal_load[steady(trajectory)].std(axis=0) / static
 
 
 def comparison(now: Trajectory, baseline: Trajectory | None) -> list[Row]:
@@ -184,16 +209,20 @@ def _figures(trajectory: Trajectory) -> dict[tuple[_Figure, str], float]:
     figures = {
         (ACCELERATION_RMS, ""): of.acceleration_rms,
         (ACCELERATION_PEAK, ""): of.acceleration_peak,
+        (WEIGHTED, ""): of.seat.total,
+        (POWER, ""): of.seat.absorbed_power,
         (PITCH, ""): float(np.degrees(of.pitch_high - of.pitch_low)),
         (IMAGINARY_SHARE, ""): 100 * of.imaginary_share,
     }
     for figure, names, values in (
         (LOAD_PEAK, of.names, of.load_max / 1e3),
         (LOAD_RMS, of.names, np.sqrt(np.mean(trajectory.normal_load**2, axis=0)) / 1e3),
+        (LOAD_COEFFICIENT, of.names, 100 * of.load_coefficient),
         (TRAVEL, of.names[:n], 1e3 * (of.travel_up - of.travel_down)),
         (AIR_TIME, of.names, of.air_time),
     ):
-        figures |= {(figure, name): float(value) for name, value in zip(names, values, strict=True)}
+        known = ((name, float(value)) for name, value in zip(names, values, strict=True) if np.isfinite(value))
+        figures |= {(figure, name): value for name, value in known}
     return figures
 
 
@@ -247,19 +276,22 @@ def contact_motion(system: System, road: Road, q: np.ndarray, v: np.ndarray) -> 
     )
 
 
-def penetration(trajectory: Trajectory) -> np.ndarray:
-    """(N, W) m: how deep each wheel is in the ground; negative, and −∞ high up, in the air."""
-    return contact_motion(trajectory.system, build_road(trajectory.config), trajectory.q, trajectory.v).depth
+def penetration(trajectory: Trajectory, road: Road | None = None) -> np.ndarray:
+    """(N, W) m: how deep each wheel is in the ground; negative, and −∞ high up, in the air.
+
+    road: another than the configuration's.
+    """
+    return contact_motion(trajectory.system, road or build_road(trajectory.config), trajectory.q, trajectory.v).depth
 
 
-def warnings(trajectory: Trajectory) -> list[RideWarning]:
-    """What the reader of this run should know, each with what it means."""
-    return [
-        *_arms_turned_far(trajectory),
-        *_wheels_sunk_deep(trajectory),
-        *_vehicle_in_the_air(trajectory),
-        *_wheels_in_phase(trajectory),
-    ]
+def warnings(trajectory: Trajectory, road: Road | None = None) -> list[RideWarning]:
+    """What the reader of this run should know, each with what it means. road: another than the configuration's."""
+    return [*motion_warnings(trajectory), *_wheels_sunk_deep(trajectory, road)]
+
+
+def motion_warnings(trajectory: Trajectory) -> list[RideWarning]:
+    """Those of the warnings that need no road."""
+    return [*_arms_turned_far(trajectory), *_vehicle_in_the_air(trajectory), *_wheels_in_phase(trajectory)]
 
 
 def _arms_turned_far(trajectory: Trajectory) -> Iterator[RideWarning]:
@@ -274,8 +306,8 @@ def _arms_turned_far(trajectory: Trajectory) -> Iterator[RideWarning]:
         )
 
 
-def _wheels_sunk_deep(trajectory: Trajectory) -> Iterator[RideWarning]:
-    depth = penetration(trajectory)
+def _wheels_sunk_deep(trajectory: Trajectory, road: Road | None) -> Iterator[RideWarning]:
+    depth = penetration(trajectory, road)
     sample, wheel = np.unravel_index(depth.argmax(), depth.shape)
     if depth[sample, wheel] > SINKING_LIMIT * trajectory.system.r:
         name = wheel_names(trajectory.system)[wheel]

@@ -2,8 +2,12 @@
 
 D(s) = (s − X)² + (h(s) − Y)² is the squared distance from the centre P = (X, Y) to the profile; half its slope is
 g(s) = (s − X) + (h − Y) h′. Where the road is too gently curved for a wheel in contact to have two minima of D, a
-Halley iteration on g = 0 from s = X finds the one. Elsewhere all cells under the wheel that can hold the lowest
-minimum are searched, so that the wheel bridges valleys tighter than itself.
+Halley iteration on g = 0 from s = X finds the one. Elsewhere all cells that can hold the lowest minimum are searched,
+so that the wheel bridges valleys tighter than itself.
+
+Which cells can, is found beforehand for all centres in a box: a bin of X, and of Y what a wheel in contact has that has
+not sunk in deeper than SEARCHED radii. For two points a and b, |P − a|² − |P − b|² is linear in P: where b is nearer
+than all of a cell from each of the box's corners, it is nearer from anywhere in the box, and the cell is left out.
 """
 
 from __future__ import annotations
@@ -17,6 +21,8 @@ from model.compiled import allocating, compiled, inlined
 REACH = 1.5  # half-width of the table's search window, in wheel radii
 CELLS_PER_RADIUS = 8  # on level stretches, so that no minimum hides inside a long cell
 SAFE = 0.15  # least curvature of D/2 that counts as "one minimum only"
+SEARCHED = 0.2  # of the radius: how deep a wheel may sink in until all cells about it are searched
+NARROWEST_BIN = 1 / 32  # of the radius
 SINKING = 0.04  # of the radius: how deep a wheel is taken to have sunk in for a first guess of its contact point
 FINAL_ERROR = 1e-12  # m: of the contact point along the road
 
@@ -35,9 +41,13 @@ class RoadTable(NamedTuple):
     bins_per_metre: float
     first_cell: np.ndarray  # (bins,) the cell in which a bin begins
     ceiling: np.ndarray  # (bins,) a centre above this does not touch, m
+    floor: np.ndarray  # (bins,) down to here the stretches hold the nearest point, m
+    first_stretch: np.ndarray  # (bins + 1,) where in `stretch` a bin's begin
+    stretch: np.ndarray  # (stretches, 2) first and last cell of each
     safe: np.ndarray  # (bins,) one minimum only, for every wheel in contact
-    touch: np.ndarray  # (bins + 1,) first guess of the contact point, the centre above a bin's edge, m
-    final_step: float  # m: a Halley step shorter than this is the last
+    guess: np.ndarray  # (bins + 1, 4) contact of a wheel above a bin's edge that has sunk in a little: s, its slope
+    # ds/dX × the bin's width, Y, ds/dY; m
+    final_step: np.ndarray  # (bins,) m: a Halley step shorter than this is the last
     radius: float
     reach: float
     repeat_from: float
@@ -60,40 +70,37 @@ def tabulate(rows: list[Row], period: float, radius: float) -> RoadTable:
     if period == 0.0:
         rows.append(_level(behind, last[1][-1]))
 
-    # Quintic Hermite cells: h, h′, h″ agree at both ends.
     start = np.concatenate([row[0][:-1] for row in rows])
     size = np.concatenate([np.diff(row[0]) for row in rows])
-    h_a, s_a, c_a = (np.concatenate([row[i][:-1] for row in rows]) for i in (1, 2, 3))
-    h_b, s_b, c_b = (np.concatenate([row[i][1:] for row in rows]) for i in (1, 2, 3))
-    d0 = (h_b - h_a - s_a * size - c_a * size**2 / 2) / size**3
-    d1 = (s_b - s_a - c_a * size) / size**2
-    d2 = (c_b - c_a) / size
-    coefficients = np.column_stack(
-        [
-            h_a,
-            s_a,
-            c_a / 2,
-            10 * d0 - 4 * d1 + d2 / 2,
-            (-15 * d0 + 7 * d1 - d2) / size,
-            (6 * d0 - 3 * d1 + d2 / 2) / size**2,
-        ]
-    )
+    coefficients = np.concatenate([quintics(np.diff(row[0]), row[1:]) for row in rows])
+    s_a, s_b = (np.concatenate([row[2][ends] for row in rows]) for ends in (slice(-1), slice(1, None)))
     node = np.append(start, start[-1] + size[-1])
-    height = np.append(h_a, h_b[-1])
+    height = np.append(coefficients[:, 0], rows[-1][1][-1])
     corner = np.zeros(len(node), dtype=np.bool_)
     corner[1:-1] = np.abs(s_b[:-1] - s_a[1:]) > 1e-9 * (1 + np.abs(s_a[1:]))
 
-    steepness = np.maximum(np.abs(s_a), np.abs(s_b)) ** 2
-    bend = np.maximum(np.abs(c_a), np.abs(c_b)) + np.abs(d1)
-    slack = size**2 * (1 + steepness + 2 * reach * bend) / 2
-    # A Halley step s leaves about s³ [(g″/2g′)² − g‴/6g′]
-    third, fourth = np.abs(6 * coefficients[:, 3]), np.abs(24 * coefficients[:, 4])
-    steep = np.sqrt(steepness)
-    wildness = (3 * steep * bend + radius * third) ** 2 / 4 + bend**2 / 2 + steep * third + radius * fourth / 6
-    bins = int(np.clip(np.ceil((node[-1] - node[0]) / max(np.median(size), 1e-3)), 16, 1_000_000))
+    # How far D can dip below its values at a cell's ends, from bounds on D″/2 = 1 + h′² + (h − Y) h″
+    steep = np.maximum(np.abs(s_a), np.abs(s_b))
+    hollow, crest = _curvature(coefficients, size)
+    steep += size * np.maximum(hollow, crest) / 2
+    near = size * steep
+    slack = size**2 / 4 * (1 + steep**2 + (reach + near) * np.maximum(hollow, crest))
+    slack_above = size**2 / 4 * (1 + steep**2 + np.maximum((radius + near) * crest, near * hollow))
+    bulge = size**2 / 8 * crest
+
+    width = max(float(np.median(size)), NARROWEST_BIN * radius)
+    bins = int(np.clip(np.ceil((node[-1] - node[0]) / width), 16, 1_000_000))
     edges = np.linspace(node[0], node[-1], bins + 1)
     first_cell = np.clip(np.searchsorted(node, edges[:-1], side="right") - 1, 0, len(size) - 1)
-    ceiling, safe, touch = _judge_bins(edges, node, height, coefficients, corner, radius)
+    # A Halley step s leaves about s³ [(g″/2g′)² − g‴/6g′]
+    bend = np.maximum(hollow, crest)
+    third, fourth = np.abs(6 * coefficients[:, 3]), np.abs(24 * coefficients[:, 4])
+    wildness = (3 * steep * bend + radius * third) ** 2 / 4 + bend**2 / 2 + steep * third + radius * fourth / 6
+    last_step = np.clip(np.cbrt(FINAL_ERROR / np.maximum(wildness, 1e-12)), 1e-5, 2e-3)
+    cells = Cells(node, height, coefficients, corner, bulge, slack_above, last_step)
+    ceiling, floor, safe = _judge_bins(edges, cells, radius)
+    guess, final_step = _guess_contacts(edges, cells, safe, radius)
+    first_stretch, stretch = _find_stretches(edges, cells, ceiling, floor, radius)
     node[-1] = np.nan  # which no x exceeds: the first and last cells are level and reach on without end
     return RoadTable(
         node=node,
@@ -104,9 +111,12 @@ def tabulate(rows: list[Row], period: float, radius: float) -> RoadTable:
         bins_per_metre=bins / float(edges[-1] - edges[0]),
         first_cell=first_cell,
         ceiling=ceiling,
+        floor=floor,
+        first_stretch=first_stretch,
+        stretch=stretch,
         safe=safe,
-        touch=touch,
-        final_step=float(np.clip(np.cbrt(FINAL_ERROR / max(wildness.max(), 1e-12)), 1e-5, 2e-3)),
+        guess=guess,
+        final_step=final_step,
         radius=radius,
         reach=reach,
         repeat_from=repeat_from,
@@ -118,50 +128,185 @@ def _level(x: np.ndarray, height: float) -> Row:
     return x, np.full(x.shape, height), np.zeros(x.shape), np.zeros(x.shape)
 
 
+def quintics(size: np.ndarray, ends: tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
+    """Coefficients (K − 1, 6) of the quintics of these sizes (K − 1,) that have h, h′, h″ (K,) at their ends."""
+    (h_a, s_a, c_a), (h_b, s_b, c_b) = ([values[part] for values in ends] for part in (slice(-1), slice(1, None)))
+    d0 = (h_b - h_a - s_a * size - c_a * size**2 / 2) / size**3
+    d1 = (s_b - s_a - c_a * size) / size**2
+    d2 = (c_b - c_a) / size
+    return np.column_stack(
+        [
+            h_a,
+            s_a,
+            c_a / 2,
+            10 * d0 - 4 * d1 + d2 / 2,
+            (-15 * d0 + 7 * d1 - d2) / size,
+            (6 * d0 - 3 * d1 + d2 / 2) / size**2,
+        ]
+    )
+
+
+def _curvature(coefficients: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Bounds (C,) on h″ and on −h″ in each cell, not below 0: h″ lies between its Bernstein coefficients."""
+    p0, p1, p2, p3 = ((order + 1) * (order + 2) * coefficients[:, order + 2] * size**order for order in range(4))
+    bernstein = np.stack([p0, p0 + p1 / 3, p0 + 2 * p1 / 3 + p2 / 3, p0 + p1 + p2 + p3])
+    return np.maximum(bernstein.max(axis=0), 0.0), np.maximum(-bernstein.min(axis=0), 0.0)
+
+
+class Cells(NamedTuple):
+    """What the bins are judged by: nodes (C + 1,) and cells (C,)."""
+
+    node: np.ndarray
+    height: np.ndarray
+    coefficients: np.ndarray
+    corner: np.ndarray  # (C + 1,) the slope jumps at this node
+    bulge: np.ndarray  # how far h rises above its values at the cell's ends, at most, m
+    slack: np.ndarray  # how far D can dip there, from a centre in contact above the road, m²
+    last_step: np.ndarray  # a Halley step shorter than this is the last, m
+
+
 @allocating
-def _judge_bins(edges, node, height, coefficients, corner, radius):
-    """For each bin of wheel positions X: the highest centre that touches, whether D is convex for all below it, and
-    (at the bins' edges) where a wheel that has sunk in a little touches.
+def _judge_bins(edges, cells, radius):
+    """For each bin of wheel positions X: the highest centre that touches; the lowest of those above the road that have
+    not sunk in too deep, where D is not convex; and whether it is, for all in contact.
     """
+    node, height, coefficients = cells.node, cells.height, cells.coefficients
+    corner, bulge = cells.corner, cells.bulge
     bins = len(edges) - 1
-    cells = len(node) - 1
-    ceiling = np.empty(bins)
+    count = len(node) - 1
+    ceiling, floor = np.empty(bins), np.full(bins, np.inf)
     safe = np.empty(bins, dtype=np.bool_)
-    touch = edges.copy()
-    first, under = 0, 0
+    first = 0
     for b in range(bins):
-        low, high = edges[b] - radius, edges[b + 1] + radius
-        while first < cells - 1 and node[first + 1] < low:
+        left, right = edges[b], edges[b + 1]
+        while first < count - 1 and node[first + 1] < left - radius:
             first += 1
-        top = max(height[first], height[first + 1])
+        highest, lowest, below = -np.inf, -np.inf, -np.inf
         c = first
-        while c < cells and node[c] <= high:
-            top = max(top, height[c + 1])
+        while c < count and node[c] <= right + radius:
+            top = max(height[c], height[c + 1]) + bulge[c]
+            away = max(node[c] - right, left - node[c + 1], 0.0)
+            highest = max(highest, top + np.sqrt(max(radius * radius - away * away, 0.0)))
+            away = max(right - node[c], node[c] - left)
+            if away < radius:
+                lowest = max(lowest, height[c] + np.sqrt(radius * radius - away * away))
+            if node[c] <= right and node[c + 1] >= left:
+                below = max(below, top)
             c += 1
-        ceiling[b] = top + radius
+        ceiling[b] = highest
         safe[b] = True
         c = first
-        while c < cells and node[c] <= high and safe[b]:
-            safe[b] = not corner[c + 1] or node[c + 1] > high
+        while c < count and node[c] <= right + radius and safe[b]:
+            safe[b] = not corner[c + 1] or node[c + 1] > right + radius
             size = node[c + 1] - node[c]
             for u in (0.0, 0.5 * size, size):
                 h, h1, h2, _ = _quintic(coefficients, c, u)
-                if 1.0 + h1 * h1 - (ceiling[b] - h) * max(h2, 0.0) < SAFE:
+                if 1.0 + h1 * h1 - (highest - h) * max(h2, 0.0) < SAFE:
                     safe[b] = False
             c += 1
-    for b in range(1, bins):
-        if safe[b - 1] and safe[b]:
-            s, d = edges[b], (1.0 - SINKING) * radius
+        if not safe[b] and lowest - SEARCHED * radius > below:
+            floor[b] = lowest - SEARCHED * radius
+    return ceiling, floor, safe
+
+
+@allocating
+def _guess_contacts(edges, cells, safe, radius):
+    """RoadTable's `guess` and `final_step`."""
+    node, coefficients, last_step = cells.node, cells.coefficients, cells.last_step
+    bins, count = len(edges) - 1, len(node) - 1
+    width = edges[1] - edges[0]
+    guess = np.zeros((bins + 1, 4))
+    final_step = np.empty(bins)
+    d = (1.0 - SINKING) * radius
+    under, before = 0, 0
+    for b in range(bins + 1):
+        s, slope = edges[b], 1.0
+        if 0 < b < bins and safe[b - 1] and safe[b]:
             for _ in range(8):  # Newton on: the point at s, d along its normal, lies above the edge
                 while under > 0 and s < node[under]:
                     under -= 1
-                while under < cells - 1 and s >= node[under + 1]:
+                while under < count - 1 and s >= node[under + 1]:
                     under += 1
-                _h, h1, h2, _h3 = _quintic(coefficients, under, s - node[under])
+                h, h1, h2, _h3 = _quintic(coefficients, under, s - node[under])
                 length = np.sqrt(1.0 + h1 * h1)
-                s -= (s - d * h1 / length - edges[b]) / (1.0 - d * h2 / length**3)
-            touch[b] = s
-    return ceiling, safe, touch
+                slope = 1.0 / (1.0 - d * h2 / length**3)
+                step = (s - d * h1 / length - edges[b]) * slope
+                s -= step
+                if abs(step) < 1e-9:
+                    break
+            guess[b, 2] = h + d / length
+            guess[b, 3] = h1 / (1.0 + h1 * h1 - d * h2 / length)
+        else:
+            while under > 0 and s < node[under]:
+                under -= 1
+            while under < count - 1 and s >= node[under + 1]:
+                under += 1
+            guess[b, 2] = _quintic(coefficients, under, s - node[under])[0] + d
+        guess[b, 0], guess[b, 1] = s, slope * width
+        if b > 0:
+            low, high = max(min(before, under) - 1, 0), min(max(before, under) + 2, count)
+            final_step[b - 1] = last_step[low:high].min()
+        before = under
+    return guess, final_step
+
+
+@allocating
+def _find_stretches(edges, cells, ceiling, floor, radius):
+    """For each bin with a floor, the stretches of cells that hold the nearest point for all centres of its box."""
+    node, height, slack = cells.node, cells.height, cells.slack
+    bins = len(edges) - 1
+    first_stretch = np.zeros(bins + 1, dtype=np.int64)
+    stretch = np.empty((64, 2), dtype=np.int64)
+    found, first = 0, 0
+    X, Y, best = np.empty(5), np.empty(5), np.empty(5, dtype=np.int64)
+    for b in range(bins):
+        first_stretch[b] = found
+        while first < len(node) - 2 and node[first + 1] < edges[b] - radius:
+            first += 1
+        if not np.isfinite(floor[b]):
+            continue
+        last = first
+        while last < len(node) - 2 and node[last + 1] <= edges[b + 1] + radius:
+            last += 1
+
+        # The nodes that are nearest to the box's corners and to its middle rule out what is further away
+        X[:] = edges[b], edges[b + 1], edges[b], edges[b + 1], (edges[b] + edges[b + 1]) / 2
+        Y[:] = floor[b], floor[b], ceiling[b], ceiling[b], (floor[b] + ceiling[b]) / 2
+        for i in range(5):
+            least = np.inf
+            for k in range(first, last + 2):
+                D = (node[k] - X[i]) ** 2 + (height[k] - Y[i]) ** 2
+                if D < least:
+                    least, best[i] = D, k
+        end = -2
+        for c in range(first, last + 1):
+            possible = True
+            for i in range(5):
+                nearer = True
+                for k in range(4):
+                    D_a = (node[c] - X[k]) ** 2 + (height[c] - Y[k]) ** 2
+                    D_b = (node[c + 1] - X[k]) ** 2 + (height[c + 1] - Y[k]) ** 2
+                    D = (node[best[i]] - X[k]) ** 2 + (height[best[i]] - Y[k]) ** 2
+                    if min(D_a, D_b) - slack[c] <= D + 1e-9:
+                        nearer = False
+                        break
+                if nearer:
+                    possible = False
+                    break
+            if not possible:
+                continue
+            if c == end + 1:
+                stretch[found - 1, 1] = c
+            else:
+                if found == len(stretch):
+                    longer = np.empty((2 * found, 2), dtype=np.int64)
+                    longer[:found] = stretch
+                    stretch = longer
+                stretch[found] = c
+                found += 1
+            end = c
+    first_stretch[bins] = found
+    return first_stretch, stretch[:found].copy()
 
 
 @inlined
@@ -194,12 +339,37 @@ def _cell(road, x):
 def _search_all_cells(road, X, Y):
     """The lowest minimum of D within reach of X, whatever the profile's shape: (s, h)."""
     first, last = _cell(road, X - road.reach), _cell(road, X + road.reach)
+    D, s, h = _search_nodes(road, X, Y, first, last, np.inf, X, 0.0)
+    _D, s, h = _search_cells(road, X, Y, first, last, D, s, h)
+    return s, h
+
+
+@compiled
+def _search_stretches(road, X, Y, b):
+    """The lowest minimum of D in a bin's stretches: (s, h)."""
+    D, s, h = np.inf, X, 0.0
+    for k in range(road.first_stretch[b], road.first_stretch[b + 1]):
+        D, s, h = _search_nodes(road, X, Y, road.stretch[k, 0], road.stretch[k, 1], D, s, h)
+    for k in range(road.first_stretch[b], road.first_stretch[b + 1]):
+        D, s, h = _search_cells(road, X, Y, road.stretch[k, 0], road.stretch[k, 1], D, s, h)
+    return s, h
+
+
+@inlined
+def _search_nodes(road, X, Y, first, last, best_D, best_s, best_h):
+    """The nearest node of cells first…last, or what was nearer before: (D, s, h)."""
     node, height = road.node, road.height
-    best_D, best_s, best_h = np.inf, X, 0.0
     for k in range(first, last + 2):
         D = (node[k] - X) ** 2 + (height[k] - Y) ** 2
         if D < best_D:
             best_D, best_s, best_h = D, node[k], height[k]
+    return best_D, best_s, best_h
+
+
+@inlined
+def _search_cells(road, X, Y, first, last, best_D, best_s, best_h):
+    """The lowest minimum of D inside cells first…last, or what was nearer before: (D, s, h)."""
+    node, height = road.node, road.height
     for c in range(first, last + 1):
         D_a = (node[c] - X) ** 2 + (height[c] - Y) ** 2
         D_b = (node[c + 1] - X) ** 2 + (height[c + 1] - Y) ** 2
@@ -238,7 +408,7 @@ def _search_all_cells(road, X, Y):
         D = (s - X) ** 2 + (h - Y) ** 2
         if D < best_D:
             best_D, best_s, best_h = D, s, h
-    return best_s, best_h
+    return best_D, best_s, best_h
 
 
 @inlined
@@ -259,10 +429,17 @@ def nearest(road, X, Y):
     s, h = X, Y
     found = False
     if road.safe[b]:
-        part = (X - road.bin_start) * road.bins_per_metre - b
-        s = road.touch[b] + part * (road.touch[b + 1] - road.touch[b])
+        u = (X - road.bin_start) * road.bins_per_metre - b
+        guess = road.guess
+        s_a, s_b, slope_a, slope_b = guess[b, 0], guess[b + 1, 0], guess[b, 1], guess[b + 1, 1]
+        rise = s_b - s_a
+        s = s_a + u * (slope_a + u * (3 * rise - 2 * slope_a - slope_b + u * (slope_a + slope_b - 2 * rise)))
+        Y_0 = guess[b, 2] + u * (guess[b + 1, 2] - guess[b, 2])
+        s += (Y - Y_0) * (guess[b, 3] + u * (guess[b + 1, 3] - guess[b, 3]))
+        c = _cell(road, s)
         for _ in range(12):
-            c = _cell(road, s)
+            if not road.node[c] <= s < road.node[c + 1]:
+                c = _cell(road, s)
             h, h1, h2, h3 = _quintic(road.coefficients, c, s - road.node[c])
             e = h - Y
             g = s - X + e * h1
@@ -270,10 +447,14 @@ def nearest(road, X, Y):
             g2 = 3.0 * h1 * h2 + e * h3
             step = -2.0 * g * g1 / (2.0 * g1 * g1 - g * g2)  # Halley
             s += step
-            if abs(step) < road.final_step:
+            if abs(step) < road.final_step[b]:
                 h += step * (h1 + step * (0.5 * h2 + step * h3 / 6.0))
-                found = Y > h  # below the road, D may have other minima
+                # Below the road and far aside, D may have other minima
+                found = Y > h and abs(s - X) <= road.radius
                 break
+    if not found and Y >= road.floor[b]:
+        s, h = _search_stretches(road, X, Y, b)
+        found = True
     if not found:
         s, h = _search_all_cells(road, X, Y)
     n_x, n_y = X - s, Y - h

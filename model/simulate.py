@@ -12,7 +12,7 @@ from model.config import Config
 from model.equilibrium import rest_pose
 from model.integrate import ADVICE, REASON, Integration, Status
 from model.kernel import pack
-from model.road import build_road
+from model.road import SPARE, build_road
 from model.trajectory import RunStatistics, Trajectory
 from model.vehicle import System, build_system
 
@@ -72,6 +72,9 @@ def simulate(
         if on_progress is not None:
             on_progress(min(run.t / settings.duration, 1.0))
         stopped = should_stop is not None and should_stop()
+        if run.y[0] > road.reach - SPARE / 2:  # rolled away downhill
+            road = build_road(config, 2 * road.reach)
+            run.change(system, road.table)
     if on_progress is not None and run.status is Status.COMPLETE:
         on_progress(1.0)
 

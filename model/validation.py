@@ -11,10 +11,14 @@ from difflib import SequenceMatcher, get_close_matches
 from itertools import pairwise
 from typing import Any
 
-from model.parameters import PARAMETER, SECTIONS, WHEEL_COUNT, Parameter, Value, number_text
+import numpy as np
+
+from model.parameters import PARAMETER, PART_LIMIT, SECTIONS, STEEPEST, WHEEL_COUNT, Parameter, Value, number_text
+from model.points import PointsError, points
 
 SAMPLE_LIMIT = 100_000  # stored samples of one run
 STEP_LIMIT = 5_000_000  # fixed steps of one run
+LEVEL = 0.001  # m: a profile under the vehicle may be this uneven
 FAULT_LIMIT = 50  # more than a reader can use; bounds the work on hostile files
 
 WHEELS, IMAGINARY = "vehicle.road_wheels", "vehicle.imaginary_suspension"
@@ -56,22 +60,53 @@ def check_values(given: Any) -> dict[str, Value]:
     Raises ConfigError with all faults: unknown keys, kinds, ranges, choices, contradictions.
     """
     faults: list[Fault] = []
-    flat = dict(_flatten(given, "", faults))
-    values: dict[str, Value] = {}
-    for path, value in flat.items():
-        parameter = PARAMETER[path]
-        if value is None and parameter.optional:
-            continue
-        try:
-            values[path] = _convert(parameter, value)
-        except (ValueError, OverflowError):
-            faults.append(_not_allowed(parameter, value))
+    values = _converted(given, faults)
     faults += _contradictions(values, {fault.path for fault in faults})
+    parts = values.get("road.parts")
+    if isinstance(parts, tuple):
+        values["road.parts"] = tuple(_checked_part(part, number, values, faults) for number, part in enumerate(parts))
     if len(faults) > FAULT_LIMIT:
         faults[FAULT_LIMIT:] = [Fault("", "", "there are more faults")]
     if faults:
         raise ConfigError(faults)
     return values
+
+
+def _converted(given: Any, faults: list[Fault]) -> dict[str, Value]:
+    """The sound ones of given values by dotted path, converted to the table's kinds; the others go to the faults."""
+    values: dict[str, Value] = {}
+    for path, value in _flatten(given, "", faults):
+        parameter = PARAMETER[path]
+        if value is None and parameter.optional:
+            continue
+        try:
+            values[path] = _convert(parameter, value)
+        except PointsError as error:
+            faults.append(Fault(path, shorten(value), str(error)))
+        except (ValueError, OverflowError):
+            faults.append(_not_allowed(parameter, value))
+    return values
+
+
+def _checked_part(part: Any, number: int, values: dict[str, Value], faults: list[Fault]) -> dict[str, Value]:
+    """The values of a road that is part of a sum, checked like a road of its own under the same vehicle."""
+    own: list[Fault] = []
+    if not isinstance(part, dict):
+        own.append(Fault("road", shorten(part), f"{shorten(part)} is not allowed; a road holds keys and values"))
+        part = {}
+    road = _converted({"road": part}, own)
+    if road.get("road.type") == "sum":
+        own.append(Fault("road.type", "sum", "a sum cannot be part of a sum; name its parts here"))
+        road = {}
+    others = {path: value for path, value in values.items() if not path.startswith("road.")}
+    own += _contradictions(others | road, {fault.path for fault in own})
+    name = f"road.parts[{number}]"
+    for fault in own:
+        if fault.path.partition(".")[0] == "road":
+            faults.append(Fault(name + fault.path[4:], fault.value, fault.message.replace("road.", f"{name}.")))
+        elif fault not in faults:
+            faults.append(Fault(name, fault.value, fault.message))
+    return {path.removeprefix("road."): value for path, value in road.items()}
 
 
 def unknown_fault(path: str, value: Any) -> Fault:
@@ -81,8 +116,8 @@ def unknown_fault(path: str, value: Any) -> Fault:
         return Fault(path, shorten(value), f"is a section; name one of its keys, such as {first}")
     known = [*PARAMETER, *SECTIONS]
     parent, _, leaf = path[:200].rpartition(".")
-    siblings = [key for key in known if key.rpartition(".")[0] == parent]
-    near = get_close_matches(path[:200], siblings, n=1)
+    siblings = {key.rpartition(".")[2]: key for key in known if key.rpartition(".")[0] == parent}
+    near = [siblings[name] for name in get_close_matches(leaf, siblings, n=1)]
     if not near:
         score = {key: SequenceMatcher(None, leaf, key.rpartition(".")[2]).ratio() for key in known}
         near = [max(known, key=lambda key: score[key])]
@@ -159,6 +194,14 @@ def _convert(parameter: Parameter, value: Any) -> Value:
                 text = " ".join(value.split())
                 if text.isprintable() and len(text) <= parameter.high:
                     return text
+        case "points":
+            if isinstance(value, str):
+                text = value if value.isprintable() else " ".join(value.split())
+                points(text)
+                return text
+        case "parts":
+            if isinstance(value, list | tuple) and len(value) <= PART_LIMIT:
+                return tuple(value)
     raise ValueError
 
 
@@ -218,6 +261,9 @@ def _contradictions(values: dict[str, Value], faulty: set[str]) -> Iterator[Faul
             roads = " and ".join(PARAMETER[key].roads)
             yield fault(key, f"a road of type {road_type} has no such key; it belongs to {roads}")
 
+    if values.get("road.file") and "road.points" not in values and road_type == "profile":
+        yield fault("road.file", "only the file of a configuration can name another; give the points, or upload it")
+
     for keys, rule in _RULES:
         if all(sound(key) and PARAMETER[key].applies_to(str(road_type)) for key in keys):
             message = rule(*(values.get(key, PARAMETER[key].default) for key in keys))
@@ -247,6 +293,20 @@ def _one_for_each_wheel(value: Any, positions: tuple[float, ...] | None, count: 
     if isinstance(value, tuple) and len(value) != wheels:
         return f"{len(value)} values for {wheels} road wheels; give {wheels}, or one number for all"
     return None
+
+
+def _arm_can_rise(travel: float | None, length: float, angle_deg: float) -> str | None:
+    return _within_reach(travel, length * (1 + math.sin(math.radians(angle_deg))))
+
+
+def _arm_can_fall(travel: float | None, length: float, angle_deg: float) -> str | None:
+    return _within_reach(travel, length * (1 - math.sin(math.radians(angle_deg))))
+
+
+def _within_reach(travel: float | None, furthest: float) -> str | None:
+    if travel is None or travel < furthest:
+        return None
+    return f"the road arm turns upright before; give less than {furthest:.4g} m"
 
 
 def _few_samples(output_rate: float, duration: float) -> str | None:
@@ -279,16 +339,48 @@ def _round_below_radius(height: float, radius: float) -> str | None:
     return None if height <= radius else f"must not be greater than the radius, {number_text(radius)} m"
 
 
-def _obstacle_ahead(position: float, height: float, radius: float, wheel_radius: float, *layout: Any) -> str | None:
+def _top_within_base(top: float, base: float) -> str | None:
+    return None if top <= base else f"must not be greater than the base, {number_text(base)} m"
+
+
+def _half_round_ahead(position: float, height: float, radius: float, *vehicle: Any) -> str | None:
     if height > radius:
         return None
-    nearest = wheel_positions(*layout)[0] + wheel_radius + math.sqrt(height * (2 * radius - height))
+    return _obstacle_ahead(position, math.sqrt(height * (2 * radius - height)), *vehicle)
+
+
+def _trapezoid_ahead(position: float, height: float, top: float, base: float, *vehicle: Any) -> str | None:
+    return _obstacle_ahead(position, max(base / 2, top / 2 + height / STEEPEST), *vehicle)
+
+
+def _step_ahead(position: float, ramp: float | None, *vehicle: Any) -> str | None:
+    return _obstacle_ahead(position, 0.0, *vehicle)
+
+
+def _obstacle_ahead(position: float, half_length: float, wheel_radius: float, *layout: Any) -> str | None:
+    nearest = wheel_positions(*layout)[0] + wheel_radius + half_length
     if position >= nearest:
         return None
     return f"the obstacle reaches under the vehicle; give at least {nearest:.4g} m"
 
 
+def _profile_ahead(text: str, start: float | None, wheel_radius: float, *layout: Any) -> str | None:
+    if start is not None:
+        return None
+    x, y = points(text)
+    front = wheel_positions(*layout)[0]
+    under = np.append(y[x <= front + wheel_radius], [y[0], np.interp(front + wheel_radius, x, y)])
+    if np.abs(under).max() <= LEVEL:
+        return None
+    return (
+        f"is not level under the vehicle, as it must be up to x = {front + wheel_radius:.4g} m; or give road.start, "
+        f"such as {front + 1:.4g} m, where its first point is then put at ground level"
+    )
+
+
 _LAYOUT = tuple(f"{WHEELS}.{key}" for key in ("positions", "count", "spacing", "offset"))
+_VEHICLE = (f"{WHEELS}.radius", *_LAYOUT)
+_ARM = ("vehicle.road_arms.length", "vehicle.road_arms.angle_deg")
 _ROUND = ("road.height", "road.radius")
 
 # The keys a rule needs, and the rule: their values -> what is wrong, or None. The first given gets the fault.
@@ -297,10 +389,16 @@ _RULES: tuple[tuple[tuple[str, ...], Callable[..., str | None]], ...] = (
     (_LAYOUT, _stands_on_wheels),
     (("vehicle.road_suspension.stiffness", *_LAYOUT[:2]), _one_for_each_wheel),
     (("vehicle.road_suspension.damping", *_LAYOUT[:2]), _one_for_each_wheel),
+    (("vehicle.road_suspension.bump_travel", *_ARM), _arm_can_rise),
+    (("vehicle.road_suspension.rebound_travel", *_ARM), _arm_can_fall),
     (("simulation.output_rate", "simulation.duration"), _few_samples),
     (("simulation.step", "simulation.duration", "simulation.integrator"), _few_steps),
     (("road.amplitude", "road.wavelength"), _not_too_steep),
     (("road.start", *_LAYOUT), _waves_ahead),
     (_ROUND, _round_below_radius),
-    (("road.position", *_ROUND, f"{WHEELS}.radius", *_LAYOUT), _obstacle_ahead),
+    (("road.position", *_ROUND, *_VEHICLE), _half_round_ahead),
+    (("road.top", "road.base"), _top_within_base),
+    (("road.position", "road.height", "road.top", "road.base", *_VEHICLE), _trapezoid_ahead),
+    (("road.position", "road.ramp", *_VEHICLE), _step_ahead),
+    (("road.points", "road.start", *_VEHICLE), _profile_ahead),
 )

@@ -34,6 +34,13 @@ class System(NamedTuple):
     spring_j: np.ndarray  # (S,) arm that takes +τ; road arms 1…n, then imaginary arms 1…m
     k_s: np.ndarray  # (S,) torsional stiffness, N m/rad (k_sl for imaginary arms)
     c_s: np.ndarray  # (S,) torsional damping, N m s/rad
+    linear: bool  # the paper's springs: what follows up to c_stop changes nothing
+    p: np.ndarray  # (S,) progression, 1/rad²
+    c_rebound: np.ndarray  # (S,) torsional damping while θ_i − θ_j falls (the wheel moves down in the hull), N m s/rad
+    bump: float  # θ_i − θ_j at which a road arm meets its bump stop, rad; infinite without one
+    rebound: float  # the same for the rebound stop, negative
+    k_stop: float  # N m/rad, of both stops
+    c_stop: float  # N m s/rad
     tau_0: np.ndarray  # (S,) preload torque, N m
     wheel: np.ndarray  # (W,) body of each wheel
     r: float  # wheel radius, m
@@ -50,7 +57,7 @@ class System(NamedTuple):
     F_max: float  # N
     alpha: float  # Baumgarte, 1/s
     beta: float  # 1/s
-    g: float  # m/s²
+    weight: np.ndarray  # (B,) N, along −y
 
     @property
     def chassis(self) -> int:
@@ -122,9 +129,9 @@ def build_system(config: Config) -> System:
     # Springs: rates at the wheel become torsional at the design pose.
     road, imag = vehicle.road_suspension, vehicle.imaginary_suspension
     lever = np.full(n, L * np.cos(phi))
-    k_s, c_s = (_per_wheel(value, n) for value in (road.stiffness, road.damping))
-    if road.basis == "wheel":
-        k_s, c_s = k_s * lever**2, c_s * lever**2
+    at_wheel = (L * np.cos(phi)) ** 2 if road.basis == "wheel" else 1.0
+    k_s, c_s = (_per_wheel(value, n) * at_wheel for value in (road.stiffness, road.damping))
+    bump, rebound = _stops(L, phi, road.bump_travel, road.rebound_travel)
     k_sl, c_sl = np.full(m, imag.stiffness), np.full(m, imag.damping)
     if imag.basis == "wheel":
         k_sl, c_sl = k_sl * L_im**2, c_sl * L_im**2
@@ -148,6 +155,13 @@ def build_system(config: Config) -> System:
         spring_j=np.concatenate([arms, links]),
         k_s=np.concatenate([k_s, k_sl]),
         c_s=np.concatenate([c_s, c_sl]),
+        linear=road.progression == 0.0 and road.rebound_ratio == 1.0 and np.isinf(bump) and np.isinf(rebound),
+        p=np.concatenate([np.full(n, road.progression * at_wheel), np.zeros(m)]),
+        c_rebound=np.concatenate([c_s * road.rebound_ratio, c_sl]),
+        bump=bump,
+        rebound=rebound,
+        k_stop=road.stop_stiffness * at_wheel,
+        c_stop=road.stop_damping * at_wheel,
         tau_0=np.concatenate([tau_0, tau_l]),
         wheel=np.concatenate([wheels, imaginary]),
         r=r,
@@ -164,7 +178,7 @@ def build_system(config: Config) -> System:
         F_max=drive.force_limit,
         alpha=simulation.baumgarte_alpha,
         beta=simulation.baumgarte_beta,
-        g=GRAVITY,
+        weight=mass * GRAVITY,
     )
     for array in system:
         if isinstance(array, np.ndarray):
@@ -199,6 +213,13 @@ def _road_preload(
     )
     a, b = np.linalg.solve(lhs, rhs)
     return (a + b * x) * lever + fixed
+
+
+def _stops(L: float, phi: float, bump_travel: float | None, rebound_travel: float | None) -> tuple[float, float]:
+    """θ_i − θ_j (u), rad, at both stops: an arm that has turned by u holds its wheel L (sin φ − sin(φ − u)) higher."""
+    bump = np.inf if bump_travel is None else phi - np.arcsin(np.sin(phi) - bump_travel / L)
+    rebound = -np.inf if rebound_travel is None else phi - np.arcsin(np.sin(phi) + rebound_travel / L)
+    return float(bump), float(rebound)
 
 
 def _per_wheel(value: float | tuple[float, ...], n: int) -> np.ndarray:

@@ -12,6 +12,8 @@ from typing import Any
 
 import yaml
 
+LONG = 2000  # characters of a text that is folded at its commas: PyYAML takes seconds for a long profile
+PIECES = 6  # between two folds
 DEPTH_LIMIT = 20  # of nested mappings and lists
 NODE_LIMIT = 2000  # keys, values and lists in all; a full configuration has some 150
 
@@ -29,8 +31,36 @@ def parse_yaml(text: str) -> Any:
 
 
 def dump_yaml(value: dict[str, Any]) -> str:
-    """A mapping of plain values as YAML: sections in blocks, leaves of a section in one flow mapping."""
-    return yaml.dump(value, Dumper=_Dumper, sort_keys=False, default_flow_style=None, allow_unicode=True, width=160)
+    """A mapping of plain values as YAML: sections in blocks, leaves of a section in one flow mapping.
+
+    Texts of more than LONG characters hold no quotes and no line breaks.
+    """
+    long: list[str] = []
+    text = yaml.dump(
+        _shortened(value, long), Dumper=_Dumper, sort_keys=False, default_flow_style=None, allow_unicode=True, width=160
+    )
+    for number, whole in enumerate(long):
+        text = text.replace(_stand_in(number), "'" + _FOLD.sub(r"\1\n    ", whole) + "'")
+    return text
+
+
+_FOLD = re.compile(rf"((?:[^,]*,){{{PIECES}}}) ")
+
+
+def _stand_in(number: int) -> str:
+    return f"long-text-{number}-{'x' * 8}"
+
+
+def _shortened(value: Any, long: list[str]) -> Any:
+    """The value with stand-ins for long texts, which go to the list."""
+    if isinstance(value, dict):
+        return {key: _shortened(inner, long) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [_shortened(inner, long) for inner in value]
+    if isinstance(value, str) and len(value) > LONG:
+        long.append(value)
+        return _stand_in(len(long) - 1)
+    return value
 
 
 class _Loader(yaml.SafeLoader):

@@ -110,6 +110,9 @@ class FakeScene:
     def wheel_state(self, wheel: int) -> WheelState | None:
         return wheel_state(self.runs[-1], wheel, self.times[-1])
 
+    def write_loads(self) -> None:
+        pass
+
     load_top = None
 
     def set_view(self, name: str) -> None:

@@ -106,6 +106,17 @@ def test_run_warns():
     assert "Warning: The wavelength, 0.7 m, fits the wheel spacing. All road wheels rise and fall" in result.stderr
 
 
+def test_a_profile_is_read_where_the_command_is_given(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("bump.csv").write_text("x,y\n3,0\n4,0.1\n")
+    profile = ("--set", "road.type=profile", "--set", "road.file=bump.csv")
+    assert parse_config(trackride("show", "paper", *profile).output).value("road.points") == "3.0 0.0, 4.0 0.1"
+    Path("bump.csv").write_text("3,0\n4,high\n")
+    failed = trackride("show", "paper", *profile)
+    assert failed.exit_code == 2
+    assert "road.file: line 2: 'high' is no number" in failed.stderr
+
+
 def test_bad_input_names_all_faults_and_writes_nothing(tmp_path):
     path, out = tmp_path / "bad.yaml", tmp_path / "run.npz"
     path.write_text("drive: {speed: 3, speed_kmh: fast}\nvehicle: {chassis: {mass: -1}}")
@@ -117,7 +128,7 @@ def test_bad_input_names_all_faults_and_writes_nothing(tmp_path):
         "--set road.start=[1: line 1, column 3: expected ',' or ']', but got '<stream end>'",
         f"{path}: drive.speed: unknown key; the nearest known one is drive.speed_kmh",
         f"{path}: drive.speed_kmh: 'fast' is not allowed; give a number from 0.5 to 100 km/h",
-        f"{path}: vehicle.chassis.mass: -1 is not allowed; give a number from 100 to 100000 kg",
+        f"{path}: vehicle.chassis.mass: -1 is not allowed; give a number from 1 to 100000 kg",
     ]
     assert not out.exists()
 

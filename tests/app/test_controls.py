@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 import viser
 
+from app.control_panel import ControlPanel
 from app.controls import (
-    ControlPanel,
     allowed,
     file_number,
     file_value,
@@ -43,6 +43,12 @@ class Asked:
     def undo(self) -> None: ...
 
     def redo(self) -> None: ...
+
+    def upload_profile(self, name: str, content: bytes) -> None: ...
+
+    def add_to_road(self, road_type: str) -> None: ...
+
+    def take_from_road(self) -> None: ...
 
     def fail(self, error: Exception) -> None:
         raise error
@@ -104,13 +110,13 @@ def test_every_parameter_has_a_control_that_means_its_value(server: viser.ViserS
             assert controls[parameter.key].value == PAPER.value(parameter.key), parameter.key
 
 
-@pytest.mark.parametrize("preset", ["half_round", "paper_0583", "short_waves"])
+@pytest.mark.parametrize("preset", ["half_round", "paper_0583", "short_waves", "random_road", "kerb", "obstacles"])
 def test_controls_follow_a_configuration(server: viser.ViserServer, preset: str) -> None:
     controls = panel(server)
     config = load_config(preset).replace({"drive.speed_kmh": 90, "simulation.atol": 1e-9})
     controls.show(config)
     for key in config.values():
-        if PARAMETER[key].group != NOTES:
+        if PARAMETER[key].group != NOTES and PARAMETER[key].kind != "text":
             assert controls[key].value == config.value(key), key
 
 
@@ -161,6 +167,16 @@ def test_what_the_user_touches_is_left_alone(server: viser.ViserServer) -> None:
     assert controls["drive.speed_kmh"].value == 15
 
 
+def test_sliders_suit_small_vehicles(server: viser.ViserServer) -> None:
+    controls = panel(server)
+    slider = controls["vehicle.imaginary_suspension.stiffness"]._one
+    usual = (slider.min, slider.max, slider.step)
+    controls.show(load_config("robot"))
+    assert (slider.min, slider.max, slider.step, slider.value) == (0.05, 5, 0.05, 0.4)
+    controls.show(PAPER)
+    assert (slider.min, slider.max, slider.step) == usual
+
+
 def test_rates_of_the_torsion_bar_are_shown_in_its_units(server: viser.ViserServer) -> None:
     controls = panel(server)
     damping = "vehicle.road_suspension.damping"
@@ -200,7 +216,7 @@ def _handles(server: viser.ViserServer) -> list[Any]:
     [
         ({"road.amplitude": 0.9}, "Amplitude: 900 mm is not allowed. Give 0 to 500 mm."),
         ({"drive.speed_kmh": float("nan")}, "Speed: nan is not allowed. Give 0.5 to 100 km/h."),
-        ({"road.start": "abc"}, "First wave: 'abc' is not allowed. Give -50 to 1000 m."),
+        ({"road.start": "abc"}, "Start of road: 'abc' is not allowed. Give -50 to 1000 m."),
         ({"road.amplitude": 0.5, "road.wavelength": 0.3}, "Amplitude: must not be greater than the wavelength, 0.3 m."),
         ({"vehicle.road_wheels.count": 2.5}, "Road wheels: 2.5 is not allowed; give a whole number from 2 to 20."),
     ],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,7 +14,8 @@ from app.marks import IN_AIR, ring_looks, scale_bar, static_marks, traction_arro
 from app.scene import Scene, build_scene, live_scene
 from app.stage import Stage
 from app.wheel_card import card
-from assets.solids import light
+from assets.hull import hull, hull_edges
+from assets.solids import joined, light
 from model import Trajectory, load_config, simulate
 from model.live import REBASE, LiveDrive
 from model.ride import suspension_travel, wheel_state
@@ -89,14 +91,28 @@ def test_the_ghost_of_the_same_run_lies_on_the_vehicle(scene: Scene) -> None:
         assert (np.abs(distance - scene.layout.radius) < 1e-4).sum() >= 64
 
 
+def test_the_ghosts_hull_has_the_edges_of_the_hull(scene: Scene) -> None:
+    vertices, _ = joined(hull(scene.layout))
+    edges = np.concatenate(hull_edges(scene.layout))
+    np.testing.assert_allclose(edges.max(axis=0)[0], vertices.max(axis=0)[0], atol=0.1)
+    np.testing.assert_allclose(np.abs(edges[:, 1]).max(), np.abs(vertices[:, 1]).max(), atol=0.15)
+    foot = scene.places.on_hull[0]
+    points = Outline(scene).segments(scene.trajectory.system.q_design, 0.0).reshape(-1, 3)
+    for x, y, z in edges:
+        place = foot + complex(*scene.trajectory.system.q_design[0, :2]) + x + 1j * z
+        assert np.linalg.norm(points - (place.real, y, place.imag), axis=1).min() < 1e-5
+
+
 def test_a_ghost_is_there_until_it_is_taken_away_and_hidden_in_a_drive(tab: Tab) -> None:
     stage = Stage(tab)  # type: ignore[arg-type]
     present, other = run(), run(**{"drive.speed_kmh": 25.0})
     stage.show(present)
     stage.show_ghost(other)
     stage.draw(3.0)
-    assert drawn(tab.sent(), "/ghost/hull", "batched_positions")[0, 0] == pytest.approx(
-        foot_in_view(build_scene(other), 3.0), abs=1e-4
+    ghost = build_scene(other)
+    bodies = ghost.bodies(3.0)
+    np.testing.assert_allclose(
+        drawn(tab.sent(), "/ghost", "points"), Outline(ghost).segments(bodies, -bodies[0, 0]), atol=1e-4
     )
     drive = LiveDrive(load_config("paper"))
     drive.advance(0.1)
@@ -107,12 +123,6 @@ def test_a_ghost_is_there_until_it_is_taken_away_and_hidden_in_a_drive(tab: Tab)
     assert tab.scene._handle_from_node_name["/ghost"].visible
     stage.show_ghost(None)
     assert not any(name.startswith("/ghost") for name in tab.nodes())
-
-
-def foot_in_view(scene: Scene, time: float) -> float:
-    """x of the hull's foot point from its centre of mass, m: where it stands in a view that follows."""
-    now = scene.at(time)
-    return float(now.hull.positions[0, 0])
 
 
 def test_a_drive_goes_on_where_its_origin_moves_along() -> None:
@@ -135,16 +145,18 @@ def test_the_road_of_a_drive_is_laid_once_for_many_instants(tab: Tab) -> None:
     drive, stage = LiveDrive(load_config("paper")), Stage(tab)  # type: ignore[arg-type]
     drive.advance(0.1)
     stage.show_live(drive.recent(0.1), drive.road())
-    ground = stage._scene.ground  # type: ignore[union-attr]
+    heights = stage._scene.ground.heights  # type: ignore[union-attr]
     drive.advance(0.2)
     stage.show_live(drive.recent(0.1), drive.road())
-    assert stage._scene.ground is ground  # type: ignore[union-attr]
+    assert stage._scene.ground.heights is heights  # type: ignore[union-attr]
 
 
 def test_a_wheel_s_card_says_when_it_is_in_the_air(scene: Scene) -> None:
     time, wheel = flight(scene)
-    text = card(wheel_state(scene.trajectory, wheel, time), "#123456")
+    state = wheel_state(scene.trajectory, wheel, time)
+    text = card(state, "#123456")
     assert all(part in text for part in ("in the air", "0.00 kN", "#123456", "–"))
+    assert "<b>0.000 m/s</b>" in card(replace(state, slip_velocity=-1e-5), "#123456")
     rolling = card(wheel_state(scene.trajectory, 2, 0.0), "#123456")
     assert "R3" in rolling
     assert "in the air" not in rolling

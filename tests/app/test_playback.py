@@ -8,7 +8,7 @@ from app.playback import SPEEDS, STEP, Playback
 
 
 def test_it_plays_at_its_speed_and_starts_again_at_the_end() -> None:
-    playback = Playback(duration=10)
+    playback = Playback(end=10)
     playback.advance(2)
     assert playback.time == 2
     playback.speed = SPEEDS["1/8×"]
@@ -20,7 +20,7 @@ def test_it_plays_at_its_speed_and_starts_again_at_the_end() -> None:
 
 
 def test_scrubbing_and_stepping_pause_it() -> None:
-    playback = Playback(duration=10)
+    playback = Playback(end=10)
     playback.scrub(4)
     playback.advance(1)
     assert (playback.time, playback.playing) == (4, False)
@@ -36,13 +36,13 @@ def test_scrubbing_and_stepping_pause_it() -> None:
 
 @pytest.mark.parametrize(("given", "expected"), [(-1, 0), (11, 10), (float("inf"), 10), (float("nan"), 0)])
 def test_times_outside_the_run_lead_to_its_ends(given: float, expected: float) -> None:
-    playback = Playback(duration=10)
+    playback = Playback(end=10)
     playback.scrub(given)
     assert playback.time == expected
 
 
 def test_a_new_run_goes_on_at_the_same_time() -> None:
-    playback = Playback(duration=10, time=7)
+    playback = Playback(end=10, time=7)
     playback.fit(20)
     assert (playback.time, playback.playing) == (7, True)
     playback.fit(3)

@@ -12,13 +12,14 @@ def test_the_tabs_that_cost_more_follow_once_the_run_stays(explore: Any, open_ta
     wait_for(lambda: tab.shows_run(1))
     wait_for(lambda: "Energy unaccounted for" in tab.html("Does the run obey"), "the Trust tab")
     assert len(tab.charts()) == 3 + 4 + 1
-    assert tab.charts()[-1]["title"].startswith("Amplitude")
-    assert "v/λ" in tab.html("Damping ratio")
+    assert tab.charts()[-1]["title"] == "Vertical acceleration: amplitude"
+    assert "v/λ" in tab.html("trackride-modes")
+    assert "uncomfortable" in tab.html("trackride-comfort")
     before = tab.html("trackride-map")
     tab.use("Speed, km/h", 30)
     wait_for(lambda: tab.shows_run(2))
     wait_for(lambda: tab.html("trackride-map") != before, "another load map")
-    wait_for(lambda: "1.19 Hz" in tab.html("Damping ratio"), "30 km/h on waves of 7 m")
+    wait_for(lambda: "1.19 Hz" in tab.html("trackride-modes"), "30 km/h on waves of 7 m")
 
 
 def test_a_wheel_singled_out_recolours_the_curves_and_keeps_the_charts(explore: Any, open_tab: Any) -> None:

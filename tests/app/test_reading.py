@@ -12,21 +12,28 @@ import pytest
 from PIL import Image
 
 from app.about import LAWS, about_html
+from app.comfort_page import FIGURES, comfort_headline, comfort_page
+from app.comparison import figure_text
 from app.load_colours import RAMP, load_colours
 from app.load_map import load_map, ticks
 from app.markup import formula_html, words_html
+from app.modes_page import mode_titles, modes_page
 from app.plot_page import marks_html, plot_page
-from app.spectrum_plot import Mark, marks_table, named, spectrum_plot
+from app.spectrum_plot import Mark, named, spectrum_plot
 from app.trust import balances, drift, errata_html, trust_html
 from model import load_config, simulate
+from model.comfort import ride_comfort
 from model.errata import ERRATA
+from model.modes import Mode, Modes, vehicle_modes
 from model.parameters import GROUPS, NOTES, PARAMETERS
-from model.spectrum import Marks, Mode
+from model.signals import CENTRE_OF_MASS, seat
+from model.spectrum import excitation
 from model.trajectory import Trajectory
 from tests.app.conftest import make_run
 
 PAPER = load_config("paper")
-MARKS = named(Marks(excitation=0.6, bounce=Mode(1.57, 0.5), pitch=Mode(1.04, 0.3), fastest_decay=-350))
+MODES = vehicle_modes(PAPER)
+MARKS = named(excitation(PAPER), MODES)
 
 
 @pytest.fixture(scope="module")
@@ -34,9 +41,9 @@ def run() -> Trajectory:
     return simulate(PAPER)
 
 
-def pictures(text: str) -> list[np.ndarray]:
-    """Pixels of all pictures in HTML, RGBA."""
-    found = re.findall(r"data:image/png;base64,([^\"]+)", text)
+def pictures(text: str, kind: str = "far") -> list[np.ndarray]:
+    """Pixels of a load map's pictures of this kind, RGBA."""
+    found = re.findall(rf'class="{kind}"[^>]+data:image/png;base64,([^"]+)', text)
     return [np.asarray(Image.open(BytesIO(b64decode(data))).convert("RGBA")) for data in found]
 
 
@@ -53,7 +60,7 @@ def test_the_spectrum_peaks_where_the_road_shakes(run: Trajectory) -> None:
 
 
 def test_the_axis_reaches_the_multiples_of_a_fast_excitation(run: Trajectory) -> None:
-    plot = spectrum_plot(run, "#000000", (Mark("v/λ", 20.0, None, ""),))
+    plot = spectrum_plot(run, "#000000", (Mark("v/λ", 20.0, drives=True),))
     assert 59 < plot.x[-1] <= 60
 
 
@@ -64,13 +71,81 @@ def test_a_baseline_has_its_own_spectrum_at_the_same_frequencies(run: Trajectory
     assert np.isfinite(spectrum_plot(make_run(samples=3), "#000000", MARKS, run).values[:, 0]).all()
 
 
-def test_marks_are_named_with_frequency_and_damping() -> None:
+def test_power_density_and_the_drivers_seat(run: Trajectory) -> None:
+    hull = spectrum_plot(run, "#000000", MARKS, run, density=True)
+    felt = spectrum_plot(run, "#000000", MARKS, run, density=True, at_seat=True)
+    assert (hull.unit, hull.curves[0].label, felt.curves[0].label) == ("m²/s³", "Centre of mass", "Driver's seat")
+    assert felt.values.max() > 4 * hull.values.max()
+    assert felt.values[:, 1] == pytest.approx(felt.values[:, 0])
+    forward = replace(run, config=PAPER.replace({"vehicle.seat.x": 3}))
+    both = spectrum_plot(run, "#000000", MARKS, forward, at_seat=True)  # the baseline's driver has a seat of his own
+    assert both.values[:, 1].max() > 1.5 * both.values[:, 0].max()
+
+
+def test_marks_are_named_and_the_highest_comes_first() -> None:
     assert [mark.name for mark in MARKS] == ["Bounce", "Pitch", "v/λ"]
-    table = marks_table(MARKS)
-    assert "<td>1.57 Hz</td><td>50 %</td>" in table
-    assert "<td>0.60 Hz</td><td></td>" in table
-    assert "Bounce 1.57 Hz" in marks_html(MARKS)
-    assert named(Marks(None, None, None, -1.0)) == ()
+    assert "Bounce 1.55 Hz" in marks_html(MARKS)
+    assert named(None, None) == ()
+    assert [mark.name for mark in named(0.6, Modes((), (), -1.0))] == ["v/λ"]
+
+
+def test_all_modes_are_told_with_what_moves() -> None:
+    table = modes_page(0.6, MODES)
+    assert "<th>2 Bounce</th><td>1.55 Hz</td><td>55 %</td><td>hull up and down 87 %</td>" in table
+    assert "<th>v/λ</th><td>0.60 Hz</td><td></td>" in table
+    assert re.search(r"hop of I5 \d+ %, hop of R5 \d+ %", table)
+    assert "Hop of R1 353" in table.split("<details>")[1]
+    assert "<th>v/λ" not in modes_page(None, MODES)
+    assert "no rest pose" in modes_page(0.6, None)
+
+
+def test_each_mode_can_be_chosen_by_a_title_of_its_own() -> None:
+    titles = mode_titles(MODES)
+    assert titles[:2] == ("1 Pitch, 1.04 Hz", "2 Bounce, 1.55 Hz")
+    assert len(set(titles)) == len(MODES.swinging) == 8
+    alike = replace(MODES, swinging=(Mode("Pitch", -1 + 5j, (), MODES.swinging[0].shape),) * 2)
+    assert len(set(mode_titles(alike))) == 2
+    assert mode_titles(None) == ()
+
+
+# ── Comfort ──
+
+
+def cells_of(text: str, line: str) -> list[list[str]]:
+    """The cells of a line in each table."""
+    rows = re.findall(rf"<tr><td>{re.escape(line)}</td>(.*?)</tr>", text)
+    return [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in rows]
+
+
+def test_the_ride_in_a_line_and_in_a_table(run: Trajectory) -> None:
+    felt, hull = (ride_comfort(run, point) for point in (seat(PAPER), CENTRE_OF_MASS))
+    assert f"<b>fairly uncomfortable</b>, {figure_text(felt.total)} m/s² weighted" in comfort_headline(run)
+    assert 'class="bad"' not in comfort_headline(run)
+    text = comfort_page(run)
+    assert all(figure.name in text for figure in FIGURES)
+    assert cells_of(text, "Both, m/s²") == [[figure_text(felt.total)], [figure_text(hull.total)]]
+    assert cells_of(text, "In words") == [["fairly uncomfortable"], ["a little uncomfortable"]]
+    assert "From 4.8 s on" in text
+    assert "Of all there is" in comfort_page(make_run(PAPER.replace({"road.type": "flat"})))
+
+
+def test_the_ride_beside_a_baselines(run: Trajectory) -> None:
+    faster = simulate(PAPER.replace({"drive.speed_kmh": 25}))
+    assert re.search(r'class="bad">14\.\d W', comfort_headline(faster))
+    text = comfort_page(faster, run)
+    powers = [
+        [figure_text(ride_comfort(of, point).absorbed_power) for of in (faster, run)]
+        for point in (seat(PAPER), CENTRE_OF_MASS)
+    ]
+    assert [cells[:2] for cells in cells_of(text, "Absorbed power, W")] == powers
+    assert cells_of(text, "VDV, m/s^1.75")[0][2] == "–"  # the steady part is longer at another speed
+    assert cells_of(comfort_page(run, run), "VDV, m/s^1.75")[0][2] == "0 %"
+    assert cells_of(comfort_page(run, make_run(samples=0)), "Both, m/s²")[0] == cells_of(text, "Both, m/s²")[0][1:2]
+
+
+def test_a_run_without_samples_has_no_comfort() -> None:
+    assert comfort_headline(make_run(samples=0)) == comfort_page(make_run(samples=0)) == ""
+    assert "not uncomfortable" in comfort_headline(make_run(samples=1))
 
 
 # ── Load map ──
@@ -94,9 +169,10 @@ def test_a_spike_of_one_sample_stands_in_the_load_map() -> None:
     run = make_run(samples=12_001)
     load = np.full_like(run.normal_load, 1e3)
     load[7777, 3] = 50e3
-    road = pictures(load_map(replace(run, normal_load=load)))[0]
-    assert road.shape[1] <= 600
-    assert (road[3] == load_colours(np.array(1.0))).all(axis=1).sum() == 1
+    for kind, most in (("far", 600), ("near", 4000)):
+        road = pictures(load_map(replace(run, normal_load=load)), kind)[0]
+        assert most / 2 < road.shape[1] <= most
+        assert (road[3] == load_colours(np.array(1.0))).all(axis=1).sum() == 1
 
 
 def test_a_baselines_maps_have_the_same_colours_and_end_where_it_ends() -> None:

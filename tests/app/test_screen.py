@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
-from app.screen import LEFT, RIGHT, SEAMS, WIDEST, Screen, chart_height
+from app import playback_panel, wheel_card
+from app.camera import Standpoint, View, standpoint
+from app.screen import AXIS_NAME, CARD, LEFT, PLOTS_HEAD, RIGHT, SEAMS, WIDEST, Screen, chart_height
+from assets.hull import hull_edges
+from assets.layout import layout_of
+from model import load_config
+from model.vehicle import build_system
 
 
 @pytest.mark.parametrize("scale", [0.5, 1.0, 1.25, 1.5, 2.0])
@@ -39,11 +46,36 @@ def test_a_taller_page_makes_taller_charts_but_coarser_drawing_does_not() -> Non
     assert chart_height(1200, 3) > chart_height(900, 3)
 
 
-@pytest.mark.parametrize(("height", "plots"), [(720, 3), (900, 3), (1000, 2), (1200, 3)])
-def test_charts_fit_below_each_other(height: int, plots: int) -> None:
-    assert plots * chart_height(height, plots) < height
+@pytest.mark.parametrize(("height", "plots"), [(720, 3), (720, 4), (900, 4), (1000, 2), (1440, 4)])
+def test_charts_fill_the_page_below_each_other(height: int, plots: int) -> None:
+    taken = PLOTS_HEAD + AXIS_NAME + plots * (chart_height(height, plots) + CARD)
+    assert 0 <= height - taken < plots or chart_height(height, plots) == 460
 
 
 def test_charts_stay_usable_on_any_page() -> None:
-    assert chart_height(300, 3) == 130
+    assert chart_height(300, 3) == 110
     assert chart_height(5000, 2) == 460
+
+
+def heights_in_picture(points: np.ndarray, stood: Standpoint, height: int) -> np.ndarray:
+    """px from the upper edge of a picture of this height."""
+    ahead = stood.look_at - stood.position
+    ahead = ahead / np.linalg.norm(ahead)
+    right = np.cross(ahead, (0.0, 0.0, 1.0))
+    up = np.cross(right / np.linalg.norm(right), ahead)
+    seen = points - stood.position
+    return height / 2 * (1 - (seen @ up) / (seen @ ahead) / np.tan(stood.fov / 2))
+
+
+@pytest.mark.parametrize("view", ["side", "three-quarter", "front"])
+@pytest.mark.parametrize(("width", "height"), [(1280, 720), (1600, 900), (1920, 1080), (2560, 1440), (3440, 1440)])
+def test_neither_card_nor_player_hides_the_vehicle(width: int, height: int, view: View) -> None:
+    screen, docked = Screen(width, height), width - LEFT - RIGHT - SEAMS
+    sizes = screen.update(docked, height)
+    assert sizes is not None
+    layout = layout_of(build_system(load_config("paper")))
+    stood = standpoint(view, layout, (width - LEFT - sizes.right - SEAMS) / height)
+    upper = heights_in_picture(np.concatenate(hull_edges(layout)), stood, height)
+    assert upper.min() > wheel_card.GAP + wheel_card.HEIGHT
+    feet = np.array([(x, y, 0.0) for x in (layout.rear, layout.front) for y in (-layout.arrow, layout.arrow)])
+    assert heights_in_picture(feet, stood, height).max() < height - playback_panel.GAP - playback_panel.HEIGHT

@@ -12,7 +12,7 @@ import pytest
 import viser
 
 from app.camera import VIEWS, standpoint
-from app.nodes import GRAIN
+from app.nodes import ROUNDING
 from app.stage import Stage
 from assets.layout import Layout, layout_of
 from model import Trajectory, load_config, simulate
@@ -151,6 +151,35 @@ def test_switches_outlive_another_vehicle_and_save_messages(tab: Tab, paper: Tra
     )
 
 
+def test_loads_at_the_names_are_those_of_the_time_and_sent_only_when_they_read_otherwise(
+    tab: Tab, paper: Trajectory
+) -> None:
+    def texts() -> dict[str, str]:
+        found = [m for m in tab.sent() if "/labels/" in m.name and "text" in getattr(m, "updates", {})]
+        return {message.name.rpartition("/")[2]: message.updates["text"] for message in found}
+
+    stage = Stage(tab)  # type: ignore[arg-type]
+    stage.show(paper)
+    stage.draw(0.5)
+    stage.write_loads()
+    assert not texts()
+    stage.show_loads = True
+    said, load = texts(), paper.normal_load[round(0.5 * paper.config.simulation.output_rate)]
+    assert said["R1"].split() == ["R1", f"{load[0] / 1e3:.1f}"]
+    assert said["I5"].split() == ["I5", f"{load[-1] / 1e3:.1f}"]
+    stage.write_loads()
+    assert not texts()
+    stage.draw(0.0)
+    stage.write_loads()
+    assert texts()
+    stage.show_labels = False
+    assert tab.scene._handle_from_node_name["/vehicle/labels"].visible
+    texts()
+    stage.show_loads = False
+    assert texts()["R1"] == "R1"
+    assert not tab.scene._handle_from_node_name["/vehicle/labels"].visible
+
+
 def test_longer_arrows_are_drawn_at_once(tab: Tab, paper: Trajectory) -> None:
     stage = Stage(tab)  # type: ignore[arg-type]
     stage.show(paper)
@@ -168,7 +197,7 @@ def test_following_the_road_moves_else_the_vehicle(tab: Tab, paper: Trajectory) 
     tab.sent()
     stage.draw(0.5)
     sent = tab.sent()
-    assert metre_marks(drawn(sent, "/road/even", "vertices")) == pytest.approx(-x[25] % 1.0, abs=GRAIN)
+    assert metre_marks(drawn(sent, "/road/even", "vertices")) == pytest.approx(-x[25] % 1.0, abs=ROUNDING)
     arm = drawn(sent, "/vehicle/road_arms", "batched_positions")[0, 0]
     assert arm == pytest.approx(paper.q[25, 1, 0] - x[25], abs=1e-5)
     stage.follow = False

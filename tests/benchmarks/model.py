@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 
 from model import load_config, simulate
 from model.compiled import compiled
+from model.config import Config
 from model.equations import State, rates
 from model.integrate import error_scale
 from model.kernel import make_work, pack, unpack
@@ -21,6 +22,22 @@ from model.simulate import starting_state
 from model.vehicle import build_system
 
 REPEATS = 15
+ROAD_REPEATS = 25
+ROADS: dict[str, dict[str, object]] = {
+    "half_round": {"road.type": "half_round"},
+    "trapezoid": {"road.type": "trapezoid"},
+    "step": {"road.type": "step"},
+    **{f"random, class {c}": {"road.type": "random", "road.roughness_class": c} for c in "ABCDEFGH"},
+    "profile, every 5 cm": {
+        "road.type": "profile",
+        "road.start": 3.0,
+        "road.points": ", ".join(f"{0.05 * k:g} {0.03 * np.sin(0.09 * k) * np.sin(0.05 * k):.5f}" for k in range(4000)),
+    },
+    "sum of random, class C, and half_round": {
+        "road.type": "sum",
+        "road.parts": [{"type": "random"}, {"type": "half_round", "position": 10}],
+    },
+}
 DENSE_TIME = 0.02  # s of simulated time with the dense equations, which are far too slow for the whole run
 
 
@@ -56,7 +73,22 @@ def measure() -> dict[str, tuple[float, str]]:
         "paper's 10 s, SciPy RK45 on the kernel": (rk45 * 1e3, "ms"),
         f"paper's 10 s, SciPy RK45 on the dense equations (scaled up from {DENSE_TIME} s)": (slow, "s"),
         "paper's 10 s faster than that": (slow / run, "times"),
+        **{f"10 s on road {name}": (_ratio(config, changes), "times the sine") for name, changes in ROADS.items()},
     }
+
+
+def _ratio(config: Config, changes: dict[str, object]) -> float:
+    """Time of a run on another road, table included, to that on the paper's; each pair right after another."""
+    other = config.replace(changes)
+    simulate(other)
+    ratios = []
+    for _ in range(ROAD_REPEATS):
+        began = perf_counter()
+        simulate(config)
+        middle = perf_counter()
+        simulate(other)
+        ratios.append((perf_counter() - middle) / (middle - began))
+    return median(ratios)
 
 
 @compiled

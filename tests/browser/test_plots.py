@@ -14,6 +14,12 @@ CURSORS = f"""() => ({CHARTS})().map(chart => {{
     const line = chart.over.querySelector('.trackride-marks i');
     return chart.posToVal(new DOMMatrix(getComputedStyle(line).transform).m41, 'x');
 }})"""
+MAP = """() => {  // the stretch of time that is seen, s
+    const field = document.querySelector('.trackride-map .field').getBoundingClientRect();
+    const picture = document.querySelector('.trackride-map img.far').style, part = 100 / parseFloat(picture.width);
+    const from = -parseFloat(picture.marginLeft) / 100 * part;
+    return field.width ? [10 * from, 10 * (from + part)] : [];
+}"""
 VALUES = f"""() => ({CHARTS})().map(chart => [...chart.root.querySelectorAll('.u-series:not(.static) .u-value')]
     .slice(1).map(value => parseFloat(value.textContent)))"""
 
@@ -56,8 +62,26 @@ def test_zoom_in_one_plot_is_the_zoom_of_all_over_tabs_and_runs(page):
         arg=curves,
     )
     page.wait_for_function(zoomed)
+
+    show(page, "Load map")
+    page.wait_for_function(f"() => Math.abs(({MAP})()[0] - 3) < 0.1 && Math.abs(({MAP})()[1] - 6) < 0.1")
+    box = page.locator(".trackride-map .field").first.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 10)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.98 * box["width"], box["y"] + 10, steps=4)
+    page.mouse.up()
+    page.wait_for_function(f"() => ({MAP})()[0] > 4.3")
+    for tab, plots in (("Ride", 4), ("Loads", 3)):
+        show(page, tab)
+        page.wait_for_function(
+            f"count => ({RANGES})().length === count && ({RANGES})().every(([from, to]) => from > 4.3 && to < 6.1)",
+            arg=plots,
+        )
     page.locator(".u-over:visible").first.dblclick()
     page.wait_for_function(f"() => ({RANGES})().every(([from, to]) => from < 0.1 && to > 9.9)")
+    show(page, "Load map")
+    page.wait_for_function(f"() => ({MAP})()[0] < 0.1 && ({MAP})()[1] > 9.9")
 
 
 def test_one_cursor_goes_through_all_plots_and_the_values_at_it_are_shown(page):
@@ -74,15 +98,56 @@ def test_one_cursor_goes_through_all_plots_and_the_values_at_it_are_shown(page):
         assert [len(values) for values in page.evaluate(VALUES)] == ([6, 5, 1] if tab == "Loads" else [1, 1, 1, 6])
 
 
+def test_the_ride_is_told_in_a_line_and_in_tables(page):
+    show(page, "Ride")
+    expect(page.locator(".trackride-comfort:visible")).to_contain_text("uncomfortable")
+    tables = page.locator(".trackride-page:visible .felt")
+    expect(tables).to_have_count(2)
+    expect(tables.first).to_contain_text("Absorbed power, W")
+
+
+def test_a_mode_swings_in_the_3d_view_until_the_run_is_played(page):
+    explorer = Explorer(page)
+    show(page, "Spectrum")
+    choice = explorer.control("Show in 3-D")
+    choice.click()
+    page.get_by_role("option", name="Bounce").click()
+    expect(explorer.status).to_contain_text("shown at 1 Hz")
+    page.wait_for_function("() => '/ghost' in __viserMutable.nodePoseData")
+    explorer.button("Play").click()
+    expect(explorer.status).to_contain_text("real time")
+    page.wait_for_function("() => !('/ghost' in __viserMutable.nodePoseData)")
+    expect(choice).to_have_value("– the run –")
+    explorer.button("Pause").click()
+
+
+def test_a_wheel_hidden_in_a_plot_takes_its_baseline_along(page):
+    explorer = Explorer(page)
+    show(page, "Loads")
+    before = explorer.run_number()
+    page.locator(".trackride-status").click()  # no box has the keys
+    page.keyboard.press("b")
+    explorer.press("Speed", "ArrowLeft")
+    explorer.wait_for_run(after=before)
+    hidden = f"() => ({CHARTS})()[0].series.filter(curve => !curve.show).map(curve => curve.label + curve.class).sort()"
+    page.wait_for_function(f"() => ({CHARTS})()[0].series.some(curve => curve.class === 'baseline')")
+    name = page.locator(".uplot:visible").first.locator(".u-series.run th", has_text="R2")
+    name.click()
+    page.wait_for_function(f"() => ({hidden})().join() === 'R2baseline,R2run'")
+    name.click()
+    page.wait_for_function(f"() => ({hidden})().length === 0")
+
+
 def test_the_other_tabs_show_spectrum_map_trust_and_equations(page):
     show(page, "Spectrum")
     names = page.locator(".trackride-frequency .trackride-marks i")
     expect(names).to_have_count(3)
     assert "Bounce" in names.first.get_attribute("data-name")
+    expect(page.locator(".trackride-modes:visible")).to_contain_text("hull up and down")
     show(page, "Load map")
-    pictures = page.locator(".trackride-map img")
-    expect(pictures).to_have_count(2)
-    assert [picture.evaluate("img => img.naturalHeight") for picture in pictures.all()] == [6, 5]
+    pictures = page.locator(".trackride-map img.far")
+    expect(pictures).to_have_count(4)  # the baseline's too
+    assert [picture.evaluate("img => img.naturalHeight") for picture in pictures.all()] == [6, 6, 5, 5]
     page.wait_for_function(
         """() => {
           const box = (css) => document.querySelector(css).getBoundingClientRect();

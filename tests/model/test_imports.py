@@ -16,11 +16,14 @@ SOURCES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob
 # A module imports from rows above its own only. Modules not named stand below all of these.
 ROWS = (
     ("model.compiled", "model.parameters", "model.yaml_text"),
-    ("model.validation", "model.road_table"),
+    ("model.points", "model.road_table"),
+    ("model.validation", "model.profile"),
     ("model.config",),
-    ("model.vehicle",),
+    ("model.vehicle", "model.shapes", "model.random_road"),
+    ("model.suspension",),
     ("model.road", "model.equilibrium", "model.trajectory"),
     ("model.equations", "model.kernel"),
+    ("model.steppers",),
     ("model.integrate",),
     ("model.simulate",),
 )
@@ -29,7 +32,7 @@ LEVEL = {module: level for level, row in enumerate(ROWS) for module in row}
 # Libraries with a place of their own: the only modules that may import them.
 PLACES = {
     "numba": {"model.compiled"},
-    "model.compiled": {"model.road_table", "model.kernel", "model.integrate"},
+    "model.compiled": {"model.road_table", "model.kernel", "model.steppers"},
     "threading": {"app.session", "app.runner", "app.errands"},
     "queue": set(),
     "_thread": set(),
@@ -46,10 +49,14 @@ PURE = (
     "app.colours",
     "app.ride_plots",
     "app.spectrum_plot",
+    "app.comfort_page",
+    "app.modes_page",
+    "app.mode_show",
     "app.load_map",
     "app.load_colours",
     "app.trust",
     "app.markup",
+    "app.driving",
 )  # no viser, so that they are tested without a browser
 
 

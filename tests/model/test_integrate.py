@@ -8,14 +8,15 @@ import pytest
 from model import simulate
 from model.config import Config
 from model.equilibrium import rest_pose
-from model.integrate import ADVICE, REASON, SCIPY_METHODS, Integration, Status
+from model.integrate import ADAPTIVE, ADVICE, REASON, SCIPY_METHODS, Integration, Status
 from model.parameters import INTEGRATORS
 from model.road import build_road
 from model.simulate import starting_state
+from model.steppers import Tableau
 from model.vehicle import build_system
 from tests.model.support import FLAT, PAPER, WHEELS
 
-COMPILED = ["dormand-prince", "rk4"]
+COMPILED = [*ADAPTIVE, "rk4"]
 
 
 def start(config: Config, **settings: object) -> Integration:
@@ -59,13 +60,53 @@ def dense_error(integrator: str, step: float, monkeypatch: pytest.MonkeyPatch) -
     return max(np.abs(found.q - right.q).max(), np.abs(found.v - right.v).max())
 
 
-@pytest.mark.parametrize(("integrator", "order"), [("dormand-prince", 5), ("rk4", 4)])
+@pytest.mark.parametrize(("integrator", "order"), [("stretched-rk43", 4), ("dormand-prince", 5), ("rk4", 4)])
 def test_order_of_the_stepper_and_of_its_dense_output(integrator, order, monkeypatch):
     """Half the step, 2^order times the accuracy, between the steps as well."""
     errors = [dense_error(integrator, step, monkeypatch) for step in (2e-3, 1e-3, 5e-4)]
     observed = np.log2(np.array(errors[:-1]) / errors[1:])
     assert errors[0] < 1e-4
     assert observed == pytest.approx([order, order], abs=0.6)
+
+
+def order_conditions(tableau: Tableau, weights: np.ndarray) -> list[float]:
+    """Elementary weights less what the exact solution has, of orders 1 to 4 (Hairer et al., table II.2.1)."""
+    c, A = tableau.time, np.pad(tableau.stage, ((0, 0), (0, 1)))
+    return [
+        weights.sum() - 1,
+        weights @ c - 1 / 2,
+        weights @ c**2 - 1 / 3,
+        weights @ A @ c - 1 / 6,
+        weights @ c**3 - 1 / 4,
+        weights @ (c * (A @ c)) - 1 / 8,
+        weights @ A @ c**2 - 1 / 12,
+        weights @ A @ A @ c - 1 / 24,
+    ]
+
+
+@pytest.mark.parametrize("tableau", ADAPTIVE.values(), ids=ADAPTIVE)
+def test_the_order_conditions_of_a_tableau(tableau):
+    new_state = np.append(tableau.stage[tableau.stages - 1], 0.0)
+    np.testing.assert_allclose(tableau.stage.sum(axis=1)[: tableau.stages], tableau.time[: tableau.stages], atol=1e-14)
+    np.testing.assert_allclose(order_conditions(tableau, new_state), 0.0, atol=1e-14)
+    estimate = order_conditions(tableau, new_state - tableau.error)
+    exact = 4 if tableau.order == 4 else 8  # conditions that the embedded solution fulfils
+    np.testing.assert_allclose(estimate[:exact], 0.0, atol=1e-14)
+
+
+@pytest.mark.parametrize("tableau", ADAPTIVE.values(), ids=ADAPTIVE)
+def test_a_tableaus_stability_reaches_as_far_as_it_says(tableau):
+    def growth(z: complex) -> float:
+        """|R(z)|: of y in one step of y' = z y, h = 1."""
+        k = np.zeros(tableau.stages, dtype=complex)
+        for stage in range(tableau.stages):
+            y = 1 + tableau.stage[stage, :stage] @ k[:stage]
+            k[stage] = z * y
+        return abs(y)
+
+    along = np.array([growth(-x) for x in np.linspace(0.01, tableau.reach, 200)])
+    assert (along < 1.0).all()
+    assert growth(-tableau.reach - 0.1) > 1.0
 
 
 @pytest.mark.parametrize("tolerance", [1e-3, 1e-5, 1e-7])
@@ -143,7 +184,7 @@ def test_every_integrator_of_the_configuration_exists():
     assert set(INTEGRATORS) == {*COMPILED, *SCIPY_METHODS}
 
 
-@pytest.mark.parametrize("integrator", ["rk4", *SCIPY_METHODS])
+@pytest.mark.parametrize("integrator", ["dormand-prince", "rk4", *SCIPY_METHODS])
 def test_integrators_agree(integrator):
     """On the first waves, at tight tolerances."""
     tight = {"simulation.duration": 1.5, "simulation.rtol": 1e-7, "simulation.atol": 1e-9, "simulation.step": 5e-4}

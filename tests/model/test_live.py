@@ -82,6 +82,12 @@ def test_half_rounds_come_again_and_again():
     assert height.max() == pytest.approx(0.1, abs=1e-4)
 
 
+def test_the_driver_may_move_under_way():
+    drive = LiveDrive(PAPER)
+    drive.advance(0.1)
+    assert drive.change(PAPER.replace({"vehicle.seat.x": -1.0}))
+
+
 def test_other_bodies_start_anew():
     drive = LiveDrive(PAPER)
     drive_on(drive, 1.0)

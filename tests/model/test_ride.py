@@ -92,6 +92,20 @@ def test_acceleration_is_the_hulls_vertical_one():
     assert figures.acceleration_peak == 4
 
 
+def test_dynamic_load_coefficient_is_the_spread_of_the_load_over_that_at_rest():
+    run = standing(samples=4)
+    run.normal_load[:, 2] = [4000, 6000, 4000, 6000]
+    run.normal_load[:, 3] = 8000
+    run.static_load[7] = 0
+    found = summary(run).load_coefficient
+    assert found[2] == pytest.approx(0.2)
+    assert found[3] == 0
+    assert np.isnan(found[7])
+    labels = {row.label: row.now for row in comparison(run, None)}
+    assert labels["Dynamic load coefficient, R3"] == pytest.approx(20)
+    assert "Dynamic load coefficient, I2" not in labels
+
+
 def test_pitch_and_drift():
     run = standing(samples=3)
     run.q[:, 0, 2] = [0, 0.1, -0.2]
@@ -221,6 +235,8 @@ def test_a_comparison_gives_now_baseline_and_change_in_readers_units():
 
     assert row("Vertical acceleration, rms") == ("m/s²", 1, 2, -50)
     assert row("Vertical acceleration, peak") == ("m/s²", 1, 2, -50)
+    assert row("Weighted acceleration at the seat")[:2] == ("m/s²", pytest.approx(summary(now).seat.total))
+    assert row("Absorbed power at the seat")[3] == pytest.approx(-75, abs=0.5)
     assert row("Pitch, peak to peak") == ("°", pytest.approx(5), pytest.approx(4), pytest.approx(25))
     assert row("Peak load, I1") == ("kN", 7.5, 5, pytest.approx(50))
     assert row("Peak load, R1") == ("kN", 5, 5, 0)

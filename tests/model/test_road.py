@@ -4,64 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize_scalar
 
 from model.road import Piece, Profile, Road, build_road
 from model.road_table import RoadTable
+from tests.model.nearest import assert_nearest, brute_force, centres_near, resting_height
 from tests.model.support import FLAT, PAPER
 
 RADIUS = 0.32
-
-
-def brute_force(road: Road, centre: np.ndarray) -> float:
-    """Distance from a centre to the profile: every dip of a fine sampling polished by itself."""
-    X, Y = centre
-
-    def D(s: float) -> float:
-        return float((s - X) ** 2 + (road.height(np.array([s]))[0] - Y) ** 2)
-
-    ends = np.concatenate([piece.nodes[[0, -1]] for piece in road.profile.pieces])  # maybe corners
-    s = np.union1d(X + np.linspace(-1.5, 1.5, 6001) * road.radius, ends[np.abs(ends - X) < 1.5 * road.radius])
-    values = (s - X) ** 2 + (road.height(s) - Y) ** 2
-    inner = values[1:-1]
-    dips = 1 + np.flatnonzero((inner <= values[:-2]) & (inner <= values[2:]))
-    dips = dips[values[dips] <= values.min() + 1e-3 * road.radius**2]
-    found = [
-        minimize_scalar(D, bounds=(s[k - 1], s[k + 1]), method="bounded", options={"xatol": 1e-12}).fun for k in dips
-    ]
-    return float(np.sqrt(min([*found, values.min()])))
-
-
-def centres_near(road: Road, rng: np.random.Generator, x: np.ndarray) -> np.ndarray:
-    """Wheel centres above these x, resting a little sunk in or not quite, some deep in the ground: (K, 2)."""
-    depth = road.radius * rng.choice([rng.uniform(-0.1, 0.1), 0.02, rng.uniform(0.1, 0.7)], len(x))
-    return np.column_stack([x, resting_height(road, x, depth)])
-
-
-def resting_height(road: Road, x: np.ndarray, depth: np.ndarray) -> np.ndarray:
-    """How high the centre is of a wheel that has sunk in by these depths: the lowest that keeps r − depth away."""
-    away = (road.radius - depth)[:, None]
-    u = np.linspace(-1.0, 1.0, 2001) * away
-    return (road.height(x[:, None] + u) + np.sqrt(away**2 - u**2)).max(axis=1)
-
-
-def assert_nearest(road: Road, centres: np.ndarray, tolerance: float = 1e-10) -> None:
-    """The road's answer is a point of the road, as far away as brute force finds, and n points from it to P."""
-    points, normals, distances = road.nearest(centres)
-    for P, point, n, d in zip(centres, points, normals, distances, strict=True):
-        right = brute_force(road, P)
-        if np.isinf(d):
-            assert right >= road.radius - tolerance
-            continue
-        assert abs(d) == pytest.approx(np.hypot(*(P - point)), abs=1e-12)
-        assert point[1] == pytest.approx(road.height(point[:1])[0], abs=tolerance)
-        np.testing.assert_allclose(point + d * n, P, atol=1e-12)
-        assert np.hypot(*n) == pytest.approx(1.0, abs=1e-12)
-        if right < road.radius:
-            assert abs(d) == pytest.approx(right, abs=tolerance)
-            assert (d < 0.0) == (P[1] < road.height(P[:1])[0])
-        else:  # only that it does not touch matters
-            assert d >= road.radius - tolerance
 
 
 def waves(rng: np.random.Generator, roughness: float, period: float) -> Piece:
@@ -133,6 +82,25 @@ def test_half_round_is_the_part_of_a_circle_above_ground(height, radius):
     np.testing.assert_allclose(road.height(outside), 0.0, atol=1e-12)
 
 
+@pytest.mark.parametrize(("height", "top", "base"), [(0.1, 0.5, 1.5), (0.2, 1.0, 1.0), (2.0, 0.01, 20.0)])
+def test_trapezoid(height, top, base):
+    changes = {"road.position": 20.0, "road.height": height, "road.top": top, "road.base": base}
+    road = build_road(PAPER.replace({"road.type": "trapezoid"} | changes))
+    base = max(base, top + 2 * height / np.tan(np.radians(85)))
+    corners = np.array([-base / 2, -top / 2, top / 2, base / 2])
+    x = 20.0 + np.linspace(-12.0, 12.0, 4801)
+    np.testing.assert_allclose(road.height(x), np.interp(x - 20.0, corners, [0, height, height, 0]), atol=1e-12)
+
+
+@pytest.mark.parametrize(("ramp", "length"), [(2.0, 2.0), (None, 0.1 / np.tan(np.radians(85))), (0.0, 0.00875)])
+def test_step(ramp, length):
+    """No steeper than 85°, and what lies behind is as high as the step."""
+    road = build_road(PAPER.replace({"road.type": "step", "road.position": 5.0, "road.ramp": ramp}))
+    x = np.linspace(0.0, 100.0, 5001)
+    np.testing.assert_allclose(road.height(x), np.interp(x, [5.0, 5.0 + length], [0, 0.1]), atol=1e-4)
+    assert road.height(np.array([5.0 + length / 2]))[0] == pytest.approx(0.05, rel=1e-3)
+
+
 # The table
 
 
@@ -154,6 +122,11 @@ ROADS = {
     "short ramp": {"road.wavelength": 7.0, "road.ramp": 0.3},
     "half round": {"road.type": "half_round"},
     "upright foot": {"road.type": "half_round", "road.height": 0.2, "road.radius": 0.2},
+    "trapezoid": {"road.type": "trapezoid"},
+    "upright block": {"road.type": "trapezoid", "road.height": 0.3, "road.top": 0.4, "road.base": 0.4},
+    "ridge": {"road.type": "trapezoid", "road.height": 0.5, "road.top": 0.01, "road.base": 2.0},
+    "kerb": {"road.type": "step"},
+    "slope": {"road.type": "step", "road.height": 0.5, "road.ramp": 2.0},
     "shallow": {"road.type": "half_round", "road.height": 0.05, "road.radius": 3.0, "road.position": 8.0},
 }
 

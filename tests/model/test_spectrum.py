@@ -1,20 +1,23 @@
-"""Spectra of signals whose answer is known, and the modes of the vehicle against other ways to find them."""
+"""Spectra of signals whose answer is known, and of the paper's run."""
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.signal
 
 from model import load_config, simulate
-from model.equilibrium import rest_pose
-from model.kernel import make_work, pack, rates
-from model.road import build_road
-from model.spectrum import acceleration_spectrum, amplitude_spectrum, marks, steady_from
-from model.vehicle import build_system
-from tests.model.support import FLAT, OPTIONS, PAPER
+from model.signals import seat, steady_from
+from model.spectrum import (
+    acceleration_density,
+    acceleration_spectrum,
+    amplitude_spectrum,
+    excitation,
+    power_spectral_density,
+)
+from tests.model.support import FLAT, PAPER
 
 
 @pytest.fixture(scope="module")
@@ -51,7 +54,7 @@ def test_runs_of_a_few_samples_have_a_spectrum_too(length):
 def test_the_papers_spectrum_peaks_where_its_waves_are_met(paper_run):
     found, height = acceleration_spectrum(paper_run)
     assert found[height.argmax()] == pytest.approx(0.6, abs=0.01)
-    assert marks(paper_run.config).excitation == pytest.approx(0.595, abs=0.001)
+    assert excitation(paper_run.config) == pytest.approx(0.595, abs=0.001)
     steady = paper_run.a[paper_run.t >= steady_from(paper_run), 0, 1]
     assert height.max() / np.sqrt(2) == pytest.approx(np.sqrt(np.mean(steady**2)), rel=0.05)
 
@@ -76,83 +79,37 @@ def test_when_the_steady_part_begins(paper_run, changes, expected):
     assert steady_from(replace(paper_run, config=PAPER.replace(changes))) == pytest.approx(expected)
 
 
-def test_bounce_and_pitch_of_the_papers_vehicle():
-    found = marks(PAPER)
-    assert found.bounce.frequency == pytest.approx(1.57, rel=0.02)
-    assert found.bounce.damping_ratio == pytest.approx(0.5, abs=0.05)
-    assert found.pitch.frequency == pytest.approx(1.04, rel=0.01)
-    assert found.pitch.damping_ratio == pytest.approx(0.3, abs=0.05)
-    assert found.fastest_decay == pytest.approx(-350, rel=0.02)
+@pytest.mark.parametrize(("length", "segment"), [(4000, 1000), (1700, 1000), (873, 873), (41, 41)])
+def test_power_density_is_welchs(length, segment):
+    signal = 3 + np.random.default_rng(1).normal(size=length).cumsum()
+    frequency, density = power_spectral_density(signal, 200)
+    points = 2 * (len(frequency) - 1)
+    expected = scipy.signal.welch(signal, 200, "hann", segment, noverlap=segment - segment // 2, nfft=points)
+    np.testing.assert_allclose(frequency, expected[0])
+    np.testing.assert_allclose(density, expected[1], rtol=1e-9, atol=1e-12 * density.max())
 
 
-@pytest.mark.parametrize("option", sorted(set(OPTIONS) - {"twenty wheels"}))
-def test_the_modes_are_among_those_of_the_whole_state(option):
-    """All q and v perturbed one by one, joints and all: Baumgarte adds eigenvalues but moves none."""
-    config = PAPER.replace(OPTIONS[option])
-    found = marks(config)
-    system = build_system(config)._replace(v_ref=0.0)
-    road = build_road(config.replace({"road.type": "flat"})).table
-    q, _ = rest_pose(system)
-    rest, work = pack(q, np.zeros_like(q), np.zeros(len(system.wheel)), 0.0), make_work(system)
-
-    def rate(state):
-        change = np.empty_like(state)
-        rates(system, road, 0.0, state, change, work)
-        return change
-
-    nudges = 1e-6 * np.eye(len(rest))
-    eigenvalues = np.linalg.eigvals(np.column_stack([(rate(rest + e) - rate(rest - e)) / 2e-6 for e in nudges]))
-    assert found.fastest_decay == pytest.approx(eigenvalues.real.min(), rel=1e-4)
-    for mode in (found.bounce, found.pitch):
-        omega, zeta = 2 * np.pi * mode.frequency, mode.damping_ratio
-        assert np.abs(eigenvalues - omega * complex(-zeta, np.sqrt(1 - zeta**2))).min() < 1e-4 * omega
+def test_the_area_under_the_density_is_the_variance():
+    noise = np.random.default_rng(2).normal(0, 1.5, 20000)
+    frequency, density = power_spectral_density(noise + 7, 200)
+    assert np.trapezoid(density, frequency) == pytest.approx(1.5**2, rel=0.03)
+    assert density[(frequency > 20) & (frequency < 80)].mean() == pytest.approx(1.5**2 / 100, rel=0.05)
 
 
-def test_bounce_of_a_hull_on_springs():
-    """With light wheels on hard ground and level arms, all there is is a mass on n springs and dampers."""
-    changes = {
-        "vehicle.imaginary_wheels.enabled": False,
-        "vehicle.road_wheels.mass": 0.5,
-        "vehicle.road_arms.mass": 0.5,
-        "vehicle.road_arms.angle_deg": 0.0,
-        "vehicle.road_suspension.damping": 1000.0,
-        "contact.normal_stiffness": 1e10,
-    }
-    bounce = marks(PAPER.replace(changes)).bounce
-    omega = np.sqrt(6 * 75530 / 5125)
-    assert bounce.frequency == pytest.approx(omega / (2 * np.pi), rel=0.01)
-    assert bounce.damping_ratio == pytest.approx(6 * 1000 / (2 * 5125 * omega), rel=0.02)
+def test_both_spectra_are_of_the_point_that_is_asked_for(paper_run):
+    point = seat(paper_run.config)
+    for spectrum in (acceleration_spectrum, acceleration_density):
+        frequency, height = spectrum(paper_run, point)
+        assert frequency[height.argmax()] == pytest.approx(0.6, abs=0.02)
+        assert height.max() > 1.5 * spectrum(paper_run)[1].max()
 
 
-def test_pitch_is_the_one_that_slows_with_the_pitch_inertia():
-    before, after = marks(PAPER), marks(PAPER.replace({"vehicle.chassis.pitch_inertia": 4 * 14630}))
-    assert after.pitch.frequency == pytest.approx(before.pitch.frequency / 2, rel=0.1)
-    assert after.bounce.frequency == pytest.approx(before.bounce.frequency, rel=0.05)
-
-
-def test_what_does_not_swing_is_not_marked():
-    stiffly_damped = {
-        "vehicle.imaginary_wheels.enabled": False,
-        "vehicle.road_suspension.damping": 30000.0,
-        "contact.normal_damping": 1e10,
-    }
-    found = marks(PAPER.replace(stiffly_damped))
-    assert found.bounce is None
-    assert found.pitch is None
+@pytest.mark.parametrize("length", [1, 2, 3])
+def test_runs_of_a_few_samples_have_a_power_density_too(length):
+    assert np.allclose(power_spectral_density(np.ones(length), 200)[1], 0)
 
 
 def test_a_road_without_waves_has_no_excitation():
-    assert marks(FLAT).excitation is None
-    assert marks(PAPER.replace({"road.amplitude": 0})).excitation is None
-    faster = marks(PAPER.replace({"drive.speed_kmh": 36, "road.wavelength": 4}))
-    assert faster.excitation == pytest.approx(2.5)
-    assert faster.bounce == marks(FLAT).bounce  # the modes are the vehicle's alone
-
-
-def test_the_marks_are_quick_enough_for_every_settled_run():
-    def seconds() -> float:
-        began = time.perf_counter()
-        marks(PAPER)
-        return time.perf_counter() - began
-
-    assert min(seconds() for _ in range(5)) < 0.1
+    assert excitation(FLAT) is None
+    assert excitation(PAPER.replace({"road.amplitude": 0})) is None
+    assert excitation(PAPER.replace({"drive.speed_kmh": 36, "road.wavelength": 4})) == pytest.approx(2.5)
