@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from itertools import product
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, Protocol
 
 import numpy as np
 import viser
@@ -63,10 +64,40 @@ def standpoint(view: View, layout: Layout, aspect: float) -> Standpoint:
     return Standpoint(centre + distance * towards, centre, FIELD_OF_VIEW)
 
 
+class Lens(Protocol):
+    """What a standpoint sets and what it depends on: viser's CameraHandle, or a stand-in."""
+
+    fov: float
+    position: Any
+    look_at: Any
+    up_direction: Any
+    max_orbit_distance: Any
+
+    @property
+    def image_width(self) -> int: ...
+
+    @property
+    def image_height(self) -> int: ...
+
+    def on_update(self, callback: Any) -> Any: ...
+
+
+class Tab(Protocol):
+    """Where a scene is drawn: viser's ClientHandle, or a stand-in."""
+
+    @property
+    def scene(self) -> viser.SceneApi: ...
+
+    @property
+    def camera(self) -> Lens: ...
+
+    def atomic(self) -> AbstractContextManager[None]: ...
+
+
 class Camera:
     """Stands where a view wants it, also when the picture takes another shape; the user may move it away."""
 
-    def __init__(self, client: viser.ClientHandle) -> None:
+    def __init__(self, client: Tab) -> None:
         self._camera = client.camera
         self._client = client
         self._view: tuple[View, Layout] | None = None
@@ -86,7 +117,7 @@ class Camera:
             self._camera.position = self._stood.position
             self._camera.look_at = self._stood.look_at
 
-    async def _refit(self, camera: viser.CameraHandle) -> None:
+    async def _refit(self, camera: Lens) -> None:
         """Stand anew when the picture's shape has changed, unless the user has moved."""
         if self._view is None or self._stood is None or abs(_aspect(camera) / self._aspect - 1) < 0.01:
             return
@@ -95,6 +126,6 @@ class Camera:
             self.look(*self._view)
 
 
-def _aspect(camera: viser.CameraHandle) -> float:
+def _aspect(camera: Lens) -> float:
     """Width by height of the picture, also while a page is being opened and has no size yet."""
     return max(camera.image_width, 1) / max(camera.image_height, 1)

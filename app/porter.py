@@ -248,7 +248,9 @@ class Porter:
         from app.replay import replay_html
 
         road = None if order.drive is None else order.drive.road
-        page = replay_html(order.run, order.title, order.dark, should_stop=self._errands.stopped, road=road)
+        page = replay_html(
+            order.run, order.baseline, order.title, order.dark, should_stop=self._errands.stopped, road=road
+        )
         if page is None:
             raise StoppedError("The replay was cancelled.")
         return order.name("replay", ".html"), page.encode()

@@ -5,8 +5,8 @@ from __future__ import annotations
 import html
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from types import SimpleNamespace
-from typing import cast
+from dataclasses import dataclass
+from typing import Any
 
 import rich
 import viser
@@ -17,7 +17,7 @@ from model.road import Road
 from model.trajectory import Trajectory
 
 RATE = 25.0  # frames a second
-LONGEST = 30.0  # s of a run that are recorded: about a third of a megabyte for each
+LONGEST = 30.0  # s of a run that are recorded: for each about 0.3 megabytes, with a ghost 0.4
 WINDOW = (1600, 900)  # pixels, whose shape the view is fitted to
 
 # Let messages take effect at once, and not with the next frame: whenever it starts anew or is scrubbed back, the page
@@ -39,8 +39,31 @@ AT_ONCE = """<script>
 </script>"""
 
 
+@dataclass
+class _Lens:
+    """A camera that takes note of where it is put."""
+
+    image_width, image_height = WINDOW
+    fov: float = 0.0
+    position: Any = None
+    look_at: Any = None
+    up_direction: Any = None
+    max_orbit_distance: Any = None
+
+    def on_update(self, callback: Any) -> None:
+        """Nobody moves it."""
+
+
+class _Page:
+    """A tab without a browser: the scene that all visitors of the throwaway server would share."""
+
+    def __init__(self, server: viser.ViserServer) -> None:
+        self.scene, self.atomic, self.camera = server.scene, server.atomic, _Lens()
+
+
 def replay_html(
     trajectory: Trajectory,
+    baseline: Trajectory | None,
     title: str,
     dark: bool = False,
     view: View = "three-quarter",
@@ -49,19 +72,21 @@ def replay_html(
 ) -> str | None:
     """A standalone page in which the run plays, can be scrubbed and looked at from all sides.
 
-    title: plain text, shown above the view and as the page's name. A run longer than LONGEST is cut there, and the
-    page says so. Takes a few seconds; not for an event loop. None when `should_stop`, asked before each frame, says so.
-    road: under a stretch of a drive; a run has that of its configuration.
+    baseline: another run, which goes along as a ghost. title: plain text, shown above the view and as the page's name.
+    A run longer than LONGEST is cut there, and the page says so. Takes a few seconds; not for an event loop. None when
+    `should_stop`, asked before each frame, says so. road: under a stretch of a drive, which has no ghost; a run has
+    that of its configuration.
     """
     duration = float(trajectory.t[-1] - trajectory.t[0])
     if duration > LONGEST:
         title += f" (the first {LONGEST:g} s of {duration:g} s)"
-    page = _record(trajectory, min(duration, LONGEST), dark, view, should_stop, road)
+    page = _record(trajectory, baseline, min(duration, LONGEST), dark, view, should_stop, road)
     return page and _titled(page, title, dark)
 
 
 def _record(
     trajectory: Trajectory,
+    baseline: Trajectory | None,
     duration: float,
     dark: bool,
     view: View,
@@ -71,12 +96,12 @@ def _record(
     with _silence():
         server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
     try:
-        camera = SimpleNamespace(image_width=WINDOW[0], image_height=WINDOW[1], on_update=lambda callback: None)
-        tab = SimpleNamespace(scene=server.scene, atomic=server.atomic, camera=camera)
-        stage = Stage(cast(viser.ClientHandle, tab), dark)
+        page = _Page(server)
+        stage = Stage(page, dark)
         stage.show(trajectory) if road is None else stage.show_live(trajectory, road)
+        stage.show_ghost(baseline)
         stage.set_view(view)
-        start = server.initial_camera
+        start, camera = server.initial_camera, page.camera
         start.fov, start.up = camera.fov, camera.up_direction
         start.position, start.look_at = camera.position, camera.look_at
         recording = server.get_scene_serializer()

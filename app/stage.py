@@ -8,9 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import viser
-
-from app.camera import Camera, View
+from app.camera import Camera, Tab, View
 from app.colours import DARK, LIGHT, wheel_palette
 from app.ghost import Ghost
 from app.labels import WheelLabels
@@ -38,7 +36,7 @@ class _Mark:
 class Stage:
     """What one tab sees. For one thread; switches take effect at once, also while nothing else is drawn."""
 
-    def __init__(self, client: viser.ClientHandle, dark: bool = False) -> None:
+    def __init__(self, client: Tab, dark: bool = False) -> None:
         self._client = client
         self._dark = dark
         self._follow = True

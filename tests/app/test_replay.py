@@ -21,7 +21,7 @@ from model import load_config, simulate
 from tests.app.conftest import make_run, wait_for
 from tests.browser.driver import SOON, chromium
 
-DURATION = 3.0  # s
+DURATION = 2.0  # s
 COUNT_LIGHTS = """() => {
   window.lights = new Set();
   setInterval(() => {
@@ -37,6 +37,7 @@ class Seen(NamedTuple):
     duration: float  # s, that the page's slider spans
     requests: list[str]  # addresses that the page asked for
     lights: list[int]  # how many lights were ever on at once
+    ghost: bool  # whether a ghost goes along
     playing: tuple[float, float]  # where it stood, and a second later
     paused: tuple[float, float]
     start: np.ndarray  # pictures (H, W, 3)
@@ -49,7 +50,7 @@ def page_file(tmp_path_factory) -> Path:
     """Of the paper's vehicle, from standing start on level ground to its first waves."""
     path = tmp_path_factory.mktemp("replay") / "replay.html"
     run = simulate(load_config("paper").replace({"simulation.duration": DURATION}))
-    page = replay_html(run, "Paper <vehicle> & road")
+    page = replay_html(run, simulate(run.config.replace({"drive.speed_kmh": 20})), "Paper <vehicle> & road")
     assert page is not None
     path.write_text(page, encoding="utf-8")
     return path
@@ -83,7 +84,8 @@ def _look_at(path: Path) -> Seen:
             pictures.append(_settled(page))
         duration = float(slider.get_attribute("aria-valuemax") or "nan")
         lights = page.evaluate("() => [...window.lights]")
-        return Seen(page.inner_text("body"), duration, requests, lights, playing, paused, *pictures)
+        ghost = page.evaluate("() => '/ghost/hull' in window.__viserMutable.nodePoseData")
+        return Seen(page.inner_text("body"), duration, requests, lights, ghost, playing, paused, *pictures)
 
 
 def _twice(page: Page) -> tuple[float, float]:
@@ -142,9 +144,13 @@ def test_scrubbing_back_does_not_flash(seen):
     assert len(seen.lights) == 1
 
 
+def test_the_baseline_goes_along_as_a_ghost(seen):
+    assert seen.ghost
+
+
 def test_a_long_run_is_cut_and_says_so(monkeypatch):
     monkeypatch.setattr(replay, "LONGEST", 0.2)
-    page = replay_html(make_run(), "Long")
+    page = replay_html(make_run(), None, "Long")
     assert page is not None
     assert "<title>Long (the first 0.2 s of 2 s)</title>" in page
 
@@ -157,7 +163,7 @@ def test_it_can_be_stopped_and_leaves_nothing_behind(capsys):
         asked.append(True)
         return len(asked) > 3
 
-    assert replay_html(make_run(), "Stopped", should_stop=should_stop) is None
+    assert replay_html(make_run(), None, "Stopped", should_stop=should_stop) is None
     assert len(asked) == 4
     wait_for(lambda: set(threading.enumerate()) <= before, "the server's threads to end")
     assert re.sub(r"\s", "", capsys.readouterr().out) == ""

@@ -12,6 +12,7 @@ import pytest
 import viser
 
 from app.camera import VIEWS, standpoint
+from app.nodes import ROUNDING
 from app.stage import Stage
 from assets.layout import Layout, layout_of
 from model import Trajectory, load_config, simulate
@@ -196,7 +197,7 @@ def test_following_the_road_moves_else_the_vehicle(tab: Tab, paper: Trajectory) 
     tab.sent()
     stage.draw(0.5)
     sent = tab.sent()
-    assert metre_marks(drawn(sent, "/road/even", "vertices")) == pytest.approx(-x[25] % 1.0, abs=1e-3)
+    assert metre_marks(drawn(sent, "/road/even", "vertices")) == pytest.approx(-x[25] % 1.0, abs=ROUNDING)
     arm = drawn(sent, "/vehicle/road_arms", "batched_positions")[0, 0]
     assert arm == pytest.approx(paper.q[25, 1, 0] - x[25], abs=1e-5)
     stage.follow = False
