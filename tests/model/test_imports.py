@@ -26,6 +26,7 @@ ROWS = (
     ("model.steppers",),
     ("model.integrate",),
     ("model.simulate",),
+    ("model.study",),
 )
 LEVEL = {module: level for level, row in enumerate(ROWS) for module in row}
 
