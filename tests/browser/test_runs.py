@@ -100,7 +100,7 @@ def test_faults_of_a_file_are_shown_and_nothing_changes(at_rest: Explorer, tmp_p
     upload(at_rest, tmp_path / "bad.yaml", "drive: {speed_kmh: 4000}\nroads: {}\n")
     faults = page.locator(".trackride-faults li")
     expect(faults).to_have_count(2)
-    expect(faults.last).to_contain_text("from 0.5 to 100 km/h")
+    expect(faults.filter(has_text="from 0.5 to 100 km/h")).to_have_count(1)
     page.get_by_role("dialog").get_by_role("button", name="Close").click()
     expect(faults).to_have_count(0)
     assert at_rest.run_number() == before
