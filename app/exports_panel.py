@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import viser
 
 from app.callbacks import by_user
-from app.export import MOVIE_LENGTH, SIZES
+from app.export import MOVIE_LENGTH, MOVIE_RATE, SIZES
 from app.imports import configuration
 from model.config import Config, ConfigError, dump_config
 
@@ -69,8 +69,9 @@ class ExportsPanel:
                 "In motion",
                 (*MOVING, CANCEL),
                 hint="Replay: the run as one HTML file that plays in any browser, in a few seconds. Movie: "
-                f"{MOVIE_LENGTH:g} s of the 3-D view from the present time on; filming takes 10 s to a minute, "
-                "and the page must stay in front. Cancel: stop making either.",
+                f"{MOVIE_LENGTH:g} s of the 3-D view from the present time on. The page draws each of its "
+                f"{MOVIE_LENGTH * MOVIE_RATE:.0f} frames anew and must stay in front: without a graphics card that can "
+                "take three minutes. Cancel: stop making either.",
             )
         with gui.add_folder("Import and presets", expand_by_default=False):
             self._name = gui.add_text("Preset name", "", hint="A name for the present parameters")

@@ -84,7 +84,7 @@ def _look_at(path: Path) -> Seen:
             pictures.append(_settled(page))
         duration = float(slider.get_attribute("aria-valuemax") or "nan")
         lights = page.evaluate("() => [...window.lights]")
-        ghost = page.evaluate("() => '/ghost/hull' in window.__viserMutable.nodePoseData")
+        ghost = page.evaluate("() => '/ghost' in window.__viserMutable.nodePoseData")
         return Seen(page.inner_text("body"), duration, requests, lights, ghost, playing, paused, *pictures)
 
 
