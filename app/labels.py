@@ -8,7 +8,7 @@ import viser
 from app.nodes import VEHICLE, Frame, update
 from assets.layout import Layout
 
-BELOW = 0.12  # m from the lowest point of the road down to the names of the road wheels
+BELOW = 0.12  # m from the lowest point of the road down to the names of the road wheels of the paper's vehicle
 NAMES = 0.0, 0.2  # m from there down to the middle of each row of names, at the size of the paper's vehicle
 WITH_LOADS = 0.12, 0.67  # the same of names with loads, which take two lines
 UNIT_AHEAD = 0.45  # m from the first wheel to the loads' unit
@@ -47,7 +47,7 @@ class WheelLabels:
 
     def move(self, x: float, lowest: float) -> None:
         """Stand under the vehicle at x in the view, m, on a road with this lowest point."""
-        self._frame.move(x, lowest - BELOW)
+        self._frame.move(x, lowest - BELOW * self._scale)
 
     def _arrange(self) -> None:
         self._unit.visible = self._with_loads

@@ -71,7 +71,7 @@ class Marks:
         middle = bar[0].mean(axis=0)
         api.add_label(
             "/marks/scale_bar/name",
-            "1 m",
+            f"{bar_length(layout):g} m",
             position=(float(middle[0]), float(middle[1]), float(middle[2]) - 0.04 * s),
             anchor="top-center",
         )
@@ -126,7 +126,7 @@ class Marks:
         if shown["grid"]:
             self._grid_frame.move(x - (now.x + scene.passed) % 1.0)
         if shown["scale_bar"]:
-            self._scale_frame.move(x, scene.lowest - BELOW)
+            self._scale_frame.move(x, scene.lowest - BELOW * scene.layout.scale)
 
     def remove(self) -> None:
         self._node.remove()
@@ -192,11 +192,17 @@ def travel_bars(scene: Scene, now: Snapshot) -> np.ndarray:
     return _aside(from_, to, scene.layout.arrow + 0.05 * s)
 
 
+def bar_length(layout: Layout) -> float:
+    """m: as much as goes three times between the first wheel and the last."""
+    room = (layout.front - layout.rear) / 3
+    return next((length for length in (1.0, 0.5, 0.2, 0.1) if length <= room), 0.05)
+
+
 def scale_bar(layout: Layout) -> np.ndarray:
-    """(3, 2, 3) one metre with its ends, under the rear of the vehicle."""
+    """(3, 2, 3) a bar of round length with its ends, under the rear of the vehicle."""
     s = layout.scale
     a = np.array([layout.idler.x - 0.6 * s, -layout.road_half_width - 0.02 * s, -0.1 * s])
-    b, up = a + np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 0.06 * s])
+    b, up = a + np.array([bar_length(layout), 0.0, 0.0]), np.array([0.0, 0.0, 0.06 * s])
     return np.array([[a, b], [a - up, a + up], [b - up, b + up]], dtype=np.float32)
 
 

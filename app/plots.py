@@ -13,6 +13,7 @@ from model.trajectory import Trajectory
 
 BUCKETS = 400  # stretches of time, each drawn by its smallest and its largest value: about as many as pixels
 DECIMALS = 2  # of the values that are plotted and read
+SMALL = 0.5  # kN on a wheel: the loads of such a vehicle need more decimals
 TIME = "Time, s"
 
 
@@ -57,11 +58,23 @@ def load_plots(
     has no plots of theirs.
     """
     n, m = run.system.n, run.system.m
+    wheel_weight = float(run.system.weight.sum()) / (n + m) / 1e3
+    decimals = DECIMALS if wheel_weight > SMALL else DECIMALS + 2
     families = [("Normal load of road wheels", wheel_curves("R", palette.road, 0, wheel), _road_loads)]
     if m:
         families += [("Normal load of imaginary wheels", wheel_curves("I", palette.imaginary, n, wheel), _other_loads)]
     plots = [
-        time_plot(title, "kN", (0.0, 1.0), curves, values, run, baseline, at_rest=_at_rest(run, curves, palette.hull))
+        time_plot(
+            title,
+            "kN",
+            (0.0, wheel_weight),
+            curves,
+            values,
+            run,
+            baseline,
+            at_rest=_at_rest(run, curves, palette.hull),
+            decimals=decimals,
+        )
         for title, curves, values in families
     ]
     if m:

@@ -129,9 +129,11 @@ class Scene:
     def lowest(self) -> float:
         """Height of the lowest point of the road that can be seen, m.
 
-        Rounded down to 5 cm (but for 5 mm), so that it stays the same for runs that differ little.
+        Rounded down to 5 cm (but for 5 mm; less for small vehicles), so that it stays the same for runs that differ
+        little.
         """
-        return 0.05 * float(np.floor(self.ground.heights.min() / 0.05 + 0.1))
+        grain = 0.05 * min(self.layout.scale, 1.0)
+        return grain * float(np.floor(self.ground.heights.min() / grain + 0.1))
 
     @cached_property
     def load_top(self) -> float:

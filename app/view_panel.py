@@ -47,7 +47,7 @@ SWITCHES = {  # attribute of the stage -> label, whether it is on at first, hint
         "R1… are road wheels, I1… imaginary wheels, front first. Click a wheel for all its figures",
     ),
     "show_loads": ("Loads in figures", False, "The normal load f_n, kN, under each wheel's name"),
-    "show_scale_bar": ("Scale bar", True, "One metre, under the rear of the vehicle"),
+    "show_scale_bar": ("Scale bar", True, "A round length, under the rear of the vehicle"),
     "show_grid": (
         "Grid",
         False,

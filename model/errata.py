@@ -55,7 +55,8 @@ ERRATA: tuple[Erratum, ...] = (
     Erratum(
         "Bump stops",
         "There are none in the paper.",
-        "There are none here: arms can turn beyond 45° at speed, and Trackride then warns.",
+        "The paper's vehicle has none here either: its arms can turn beyond 45° at speed, and Trackride then warns. "
+        "Bump and rebound stops can be given.",
     ),
 )
 

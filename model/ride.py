@@ -302,7 +302,7 @@ def _arms_turned_far(trajectory: Trajectory) -> Iterator[RideWarning]:
         angle = np.degrees(turn[sample, arm])
         yield RideWarning(
             f"Road arm {arm + 1} turned by {angle:+.3g}° (t = {trajectory.t[sample]:.2f} s)",
-            "The paper's suspension has no bump stops: a real one would have hit them before 45°.",
+            "A real arm would have hit a stop before 45°; the paper's has none. Give bump and rebound stops.",
         )
 
 

@@ -80,6 +80,10 @@ class Explorer:
         """The handle of a slider."""
         return self.control(label).locator("[role=slider]")
 
+    def box(self, label: str) -> Locator:
+        """The box beside a slider."""
+        return self.control(label).locator("xpath=..").locator("input[type=text]")
+
     def value(self, label: str) -> float:
         """What a slider stands at."""
         return float(self.thumb(label).get_attribute("aria-valuenow") or "nan")

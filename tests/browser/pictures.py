@@ -4,10 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from playwright.sync_api import Browser
+
 from tests.browser.driver import Explorer, chromium, running_explorer
 
 PICTURES = Path(__file__).parents[2] / "assets" / "pictures"
 SIZE = {"width": 1600, "height": 900}
+GALLERY = {  # three vehicles on three roads: preset, what is set, time in s, and the view's key
+    "m113": ("m113", {"road.type": "half_round", "road.height": 0.2, "road.radius": 0.3, "road.position": 8}, 2.1, "1"),
+    "marder": ("marder", {"road.type": "random", "road.roughness_class": "E", "drive.speed_kmh": 30}, 7.1, "1"),
+    "robot": ("robot", {}, 6.0, "2"),
+}
 
 
 def take(explorer: Explorer, name: str) -> None:
@@ -28,9 +35,26 @@ def open_at_rest(explorer: Explorer, address: str) -> None:
     explorer.page.wait_for_timeout(1000)
 
 
+def take_gallery(browser: Browser) -> None:
+    """Each vehicle in an explorer of its own."""
+    for name, (preset, changes, time, view) in GALLERY.items():
+        settings = [f"--set={key}={value}" for key, value in changes.items()]
+        with running_explorer(preset, *settings) as address:
+            explorer = Explorer(browser.new_page(viewport=SIZE))
+            open_at_rest(explorer, address)
+            at = explorer.box("Time")
+            at.fill(str(time))
+            at.press("Enter")
+            explorer.page.locator(".trackride-status").click()  # no box has the keys any more
+            explorer.page.keyboard.press(view)
+            take(explorer, name)
+            explorer.page.close()
+
+
 def main() -> None:
     PICTURES.mkdir(exist_ok=True)
     with running_explorer() as address, chromium() as browser:
+        take_gallery(browser)
         explorer = Explorer(browser.new_page(viewport=SIZE))
         page = explorer.page
         open_at_rest(explorer, address)
