@@ -235,7 +235,7 @@ def test_warnings_say_what_they_mean(run: Trajectory) -> None:
     q[50, run.system.road_arms.start, 2] = 1.0
     text = trust_html(replace(run, q=q))
     assert "Road arm 1 turned by" in text
-    assert "no bump stops" in text
+    assert "Give bump and rebound stops" in text
 
 
 def test_a_stretch_of_a_drive_is_not_balanced_and_no_run_is_not_judged(run: Trajectory) -> None:

@@ -118,6 +118,8 @@ def test_the_pendulum_by_the_kernel(integrator):
         K_p=0.0,
         K_i=0.0,
     )
+    for array in (system.mass, system.inertia, system.weight, system.u_i, system.u_j, zero):
+        array.setflags(write=False)  # as a vehicle's: numba compiles anew for others
     q = np.zeros((5, 3))
     q[:, 1] = 5.0  # m, out of the ground's reach
     q[3:, 0] = -1.0
