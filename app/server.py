@@ -20,6 +20,7 @@ from model.config import Config, load_config, preset_names
 
 HOST, PORT = "127.0.0.1", 8080
 PORTS_TO_TRY = 100
+HAND_OVER = 5e-4  # s until a thread that computes in Python lets another have its turn
 EVERYWHERE = ("0.0.0.0", "::", "")  # hosts that mean all of this machine's addresses
 
 
@@ -36,6 +37,7 @@ class Explorer:
         config: what each tab runs first; preset: the name it goes by, of a preset or a file. Further arguments go to
         the sessions.
         """
+        sys.setswitchinterval(HAND_OVER)  # a run waits between its chunks for panels that are being filled
         presets = {name: load_config(name) for name in preset_names()}
         presets.setdefault(preset, config)
         self._sessions: dict[int, Session] = {}

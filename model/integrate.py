@@ -5,7 +5,6 @@ between stretches. A run that comes to grief keeps its good part, a status and a
 from __future__ import annotations
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from model.kernel import Work, make_work, rates
 from model.road_table import RoadTable
@@ -160,6 +159,8 @@ class Integration:
 
     def _advance_scipy(self, t_stop: float) -> None:
         """One of SciPy's solvers on the same right-hand side, for comparison."""
+        from scipy.integrate import solve_ivp  # half a second that no other stepper needs
+
         time, count = self._clock
         dy = self._stages[0]
 
