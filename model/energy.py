@@ -63,8 +63,8 @@ def energy_balance(trajectory: Trajectory) -> EnergyBalance:
 
     The closing error tells how far the motion breaks the laws it was computed from. Powers are known at the samples
     only and integrated between them by the trapezoidal rule, so that at 200 samples a second it tells less where
-    loads jump: the paper's run (smooth) closes to 0.0004 %, most of which are the integrator's tolerances; a half-round
-    obstacle, at whose foot the contact point jumps, to 0.13 %, which falls to 0.015 % at 2000 samples a second.
+    loads jump: the paper's run (smooth) closes to 0.004 %, most of which are the integrator's tolerances; a half-round
+    obstacle, at whose foot the contact point jumps, to 0.12 %, which falls to 0.009 % at 2000 samples a second.
     """
     system, q, v = trajectory.system, trajectory.q, trajectory.v
     touch = contact_motion(system, build_road(trajectory.config), q, v)
