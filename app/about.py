@@ -6,8 +6,8 @@ import html
 from functools import cache
 from typing import NamedTuple
 
-from app.controls import choice_words, shown_text
 from app.markup import formula_html, page, words_html
+from app.parameter_text import value_text
 from model.parameters import GROUPS, NOTES, PARAMETERS, Parameter
 
 
@@ -119,11 +119,5 @@ def _row(parameter: Parameter) -> str:
 
 def _default(parameter: Parameter) -> str:
     """With its unit; in brackets where it is computed from others."""
-    value = parameter.default
-    if isinstance(value, bool):
-        return "on" if value else "off"
-    if parameter.kind == "choice":
-        return choice_words(str(value))
-    if value is None:
-        return f"computed{parameter.shown_unit and f' ({parameter.shown_unit})'}"
-    return f"{shown_text(parameter, value)} {parameter.shown_unit}".strip()
+    text = value_text(parameter, parameter.default)
+    return text if parameter.default is not None or not parameter.shown_unit else f"{text} ({parameter.shown_unit})"

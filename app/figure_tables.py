@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from app.comparison import change_text, figure_text
-from app.controls import choice_words, shown_text
 from app.figure_page import BAND, GREY, MARKED, Page, plain
+from app.parameter_text import value_text
 from model.config import Config
 from model.parameters import NOTES, PARAMETER, Parameter
 from model.ride import AIR_TIME, LOAD_PEAK, LOAD_RMS, TRAVEL, Row
@@ -54,7 +54,7 @@ class Tables:
         against = "the baseline" if compared else "the paper's vehicle"
         self._head("Parameters", f"changed against {against}: first, marked" if changed else f"as in {against}")
         for key in changed:
-            was = _valued(reference.parameter(key), before[key]) if key in before else ""
+            was = value_text(reference.parameter(key), before[key]) if key in before else ""
             self._changed_row(config.parameter(key), values[key], was)
         self._other_rows([(config.parameter(key), values[key]) for key in same])
 
@@ -124,7 +124,7 @@ class Tables:
     def _changed_row(self, parameter: Parameter, value: Any, was: str) -> None:
         self._next(MARKED)
         self._cell(self._x + 0.02, _named(parameter), weight="bold")
-        self._cell(self._x + 1.85, plain(_valued(parameter, value), 32), weight="bold")
+        self._cell(self._x + 1.85, plain(value_text(parameter, value), 32), weight="bold")
         if was:
             self._cell(self._x + self._width - 0.02, plain(f"was {was}", 26), ha="right")
 
@@ -138,7 +138,7 @@ class Tables:
             for number, (parameter, value) in enumerate(part):
                 self._next(BAND if number % 2 == 0 else "", x, width)
                 self._cell(x + 0.02, _named(parameter))
-                self._cell(x + width - 0.02, plain(_valued(parameter, value), 24), ha="right")
+                self._cell(x + width - 0.02, plain(value_text(parameter, value), 24), ha="right")
 
 
 def telling(names: list[str], rows: dict[tuple[str, str], Row]) -> list[str]:
@@ -164,12 +164,3 @@ def _named(parameter: Parameter) -> str:
     symbol, _, index = parameter.symbol.partition("_")
     formula = f"  ${symbol}_{{{index}}}$" if index else f"  ${symbol}$" if symbol else ""
     return parameter.label + formula
-
-
-def _valued(parameter: Parameter, value: Any) -> str:
-    """A value with its unit, as people read it."""
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if parameter.kind == "choice":
-        return choice_words(value)
-    return f"{shown_text(parameter, value)} {parameter.shown_unit}".strip()

@@ -12,6 +12,6 @@ def value_text(parameter: Parameter, value: Value) -> str:
         return "computed"
     if isinstance(value, bool):
         return "yes" if value else "no"
-    if isinstance(value, str):
-        return choice_words(value)
+    if parameter.kind == "choice":
+        return choice_words(str(value))
     return f"{shown_text(parameter, value)} {parameter.shown_unit}".strip()
