@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Callable, Mapping
+from time import monotonic
 from typing import Any, Protocol
 
 import numpy as np
@@ -36,6 +37,7 @@ from model.trajectory import Trajectory
 BUSY_DELAY = 0.2  # s before a run is called under way: quick ones are not worth a flicker
 SLOW_START = 1.5  # s without progress: the model is being compiled
 FIRST_START = "compiling the model, for half a minute…"
+ROAD_EVERY = 0.35  # s between two side views of the road
 NOTICE_TIME = 10.0  # s that a notification stays
 
 
@@ -96,6 +98,7 @@ class Window:
         self._drawn: tuple[int, float] | None = None  # run and time that the 3-D view shows
         self._mode: ModeShow | None = None  # in the run's place
         self._run_number = 0
+        self._road_due = 0.0  # monotonic s
         self._road_ahead = RoadAhead()
         self._notices: dict[str, viser.NotificationHandle] = {}
         self._screen = Screen(client.camera.image_width, client.camera.image_height)
@@ -277,7 +280,14 @@ class Window:
         self._view.show_load_scale(self.scene.load_top)
 
     def _show_road(self, time: float) -> None:
-        """The side view of the road about the vehicle at a time of the run or drive, s."""
+        """The side view of the road about the vehicle at a time of the run or drive, s.
+
+        A new picture is work for the page, which has curves to draw meanwhile: a few times a second are enough.
+        """
+        now = monotonic()
+        if now < self._road_due:
+            return
+        self._road_due = now + ROAD_EVERY
         if self._drive is not None:
             view = self._road_ahead.of_drive(self._drive.recent, self._drive.road, time)
         elif self._run is not None and len(self._run.t):
