@@ -87,7 +87,7 @@ def order_conditions(tableau: Tableau, weights: np.ndarray) -> list[float]:
 @pytest.mark.parametrize("tableau", ADAPTIVE.values(), ids=ADAPTIVE)
 def test_the_order_conditions_of_a_tableau(tableau):
     new_state = np.append(tableau.stage[tableau.stages - 1], 0.0)
-    np.testing.assert_allclose(tableau.stage.sum(axis=1)[: tableau.stages], tableau.time[: tableau.stages], atol=1e-14)
+    np.testing.assert_allclose(tableau.stage.sum(axis=1)[: tableau.stages], tableau.time[: tableau.stages], 0.0, 1e-14)
     np.testing.assert_allclose(order_conditions(tableau, new_state), 0.0, atol=1e-14)
     estimate = order_conditions(tableau, new_state - tableau.error)
     exact = 4 if tableau.order == 4 else 8  # conditions that the embedded solution fulfils
