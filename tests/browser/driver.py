@@ -6,10 +6,14 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from time import monotonic
+from typing import TypeVar
 
 from playwright.sync_api import Browser, Locator, Page, expect, sync_playwright
+
+T = TypeVar("T")
 
 FLAGS = [
     "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
@@ -120,6 +124,16 @@ class Explorer:
             timeout=SOON,
         )
         return self.run_number()
+
+    def wait_until_still(self, read: Callable[[], T]) -> T:
+        """Until what is read has not changed for a good half second; what it is then."""
+        now, end = read(), monotonic() + SOON / 1000
+        while monotonic() < end:
+            self.page.wait_for_timeout(600)
+            before, now = now, read()
+            if before == now:
+                return now
+        raise AssertionError("it never stood still")
 
     def button(self, name: str) -> Locator:
         return self.page.get_by_role("button", name=name, exact=False)

@@ -51,10 +51,7 @@ def test_the_drive_goes_on_follows_sliders_and_rests_in_the_background(explorer)
     assert "Drive" in explorer.status.inner_text()
 
     set_hidden(explorer, True)
-    page.wait_for_timeout(600)
-    stood = explorer.curves()
-    page.wait_for_timeout(600)
-    assert explorer.curves() == stood
+    explorer.wait_until_still(explorer.curves)
     set_hidden(explorer, False)
     rested = seconds(explorer)
     wait_until(explorer, lambda: seconds(explorer) > rested)
