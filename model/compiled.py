@@ -15,7 +15,7 @@ from typing import Any
 
 from numba import config, njit
 
-_KERNELS = ("compiled.py", "road_table.py", "kernel.py", "steppers.py")
+_KERNELS = ("compiled.py", "lanes.py", "road_search.py", "road_table.py", "contact.py", "kernel.py", "steppers.py")
 _package = Path(__file__).parent
 
 if not config.CACHE_DIR:  # type: ignore[attr-defined]

@@ -6,6 +6,8 @@ Every body's height is y_0 + Σ_R sin θ_R E_x + cos θ_R E_y over the rotating 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from model.suspension import elastic
@@ -28,8 +30,8 @@ def rest_pose(system: System) -> tuple[np.ndarray, np.ndarray]:
     """
     n, m, B = system.n, system.m, len(system.mass)
     rotating = np.concatenate([[0], np.arange(1, 1 + n), np.arange(1 + 2 * n, 1 + 2 * n + m)])
-    E = _levers(system)[:, rotating]
-    E_x, E_y = E[..., 0], E[..., 1]
+    E = _levers(system)
+    E_x, E_y = E[:, rotating, 0], E[:, rotating, 1]
     size = 1 + len(rotating)
     column = np.zeros(B, dtype=int)
     column[rotating] = 1 + np.arange(len(rotating))
@@ -59,8 +61,7 @@ def rest_pose(system: System) -> tuple[np.ndarray, np.ndarray]:
     # A few millimetres into the ground, or no wheel would feel it
     z = np.zeros(size)
     z[0] = system.q_design[0, 1] - np.sqrt(weight.sum() / len(system.wheel) / system.k_n)
-    z = _minimise(terms, z)
-    _, gradient, hessian, sink = terms(z)
+    z, gradient, hessian, sink = _minimise(terms, z)
     worst = np.abs(gradient).max()
     if np.linalg.eigvalsh(hessian)[0] <= 0.0:
         raise NoEquilibriumError(
@@ -77,12 +78,15 @@ def rest_pose(system: System) -> tuple[np.ndarray, np.ndarray]:
             "At rest the hull or an arm would have turned right over: the suspension cannot carry "
             "the vehicle near its design pose. Stiffen the suspension or lower the preload of the imaginary wheels."
         )
-    return _poses(system, z[0], np.bincount(rotating, z[1:], B)), (system.k_n * sink**2)[system.wheel]
+    return _poses(E, z[0], np.bincount(rotating, z[1:], B)), (system.k_n * sink**2)[system.wheel]
 
 
-def _minimise(terms, z: np.ndarray) -> np.ndarray:  # type: ignore[no-untyped-def]
-    """Newton's method with Levenberg damping: downhill in V until the gradient vanishes."""
-    V, gradient, hessian, _ = terms(z)
+Terms = Callable[[np.ndarray], tuple[float, np.ndarray, np.ndarray, np.ndarray]]
+
+
+def _minimise(terms: Terms, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Newton's method with Levenberg damping: downhill in V until the gradient vanishes. Where, and the terms there."""
+    V, gradient, hessian, sink = terms(z)
     damping = LEAST_DAMPING
     for _ in range(MAX_ITERATIONS):
         if np.abs(gradient).max() <= GOOD_ENOUGH:
@@ -93,13 +97,13 @@ def _minimise(terms, z: np.ndarray) -> np.ndarray:  # type: ignore[no-untyped-de
         V_next, *rest = terms(z + step)
         falls = V_next < V or np.abs(rest[0]).max() < np.abs(gradient).max()
         if falls and gradient @ step < 0.0:
-            z, V, (gradient, hessian, _) = z + step, V_next, rest
+            z, V, (gradient, hessian, sink) = z + step, V_next, rest
             damping = max(damping / 10.0, LEAST_DAMPING)
         else:
             damping = max(10.0 * damping, 1e-4)
             if damping > 1e12:
                 break
-    return z
+    return z, gradient, hessian, sink
 
 
 def _levers(system: System) -> np.ndarray:
@@ -113,9 +117,8 @@ def _levers(system: System) -> np.ndarray:
     return E
 
 
-def _poses(system: System, y_0: float, theta: np.ndarray) -> np.ndarray:
-    """q (B, 3) from the chassis's height and all rotations (B,), chassis at x = 0."""
-    E = _levers(system)
+def _poses(E: np.ndarray, y_0: float, theta: np.ndarray) -> np.ndarray:
+    """q (B, 3) from the levers, the chassis's height and all rotations (B,), chassis at x = 0."""
     sin, cos = np.sin(theta), np.cos(theta)
     x = E[..., 0] @ cos - E[..., 1] @ sin
     y = y_0 + E[..., 0] @ sin + E[..., 1] @ cos

@@ -6,8 +6,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from model.kernel import Work, make_work, rates
-from model.road_table import RoadTable
+from model.kernel import rates
+from model.lanes import in_lanes, make_work
+from model.road_search import RoadTable
 from model.steppers import (
     DORMAND_PRINCE,
     EVALUATIONS,
@@ -83,12 +84,12 @@ class Integration:
         step: float = 1e-3,
         capacity: int | None = None,
     ) -> None:
-        self.system, self.road = system, road
+        self.system, self.lanes, self.road = system, in_lanes(system), road
         self.duration, self.rate = duration, rate
         self.integrator, self.rtol, self.atol = integrator, rtol, atol
         self.samples = make_samples(system, capacity or int(np.floor(duration * rate + 1e-9)) + 1)
         self.y = y.copy()
-        self._work: Work = make_work(system)
+        self._work = make_work(system)
         first_step = step if integrator == "rk4" else 1e-4
         self._clock = Clock(np.array([0.0, first_step, 1e-4, np.inf]), np.zeros(7, dtype=np.int64))
         self._scale = error_scale(system, rtol, atol)
@@ -110,7 +111,7 @@ class Integration:
 
     def change(self, system: System, road: RoadTable, y: np.ndarray | None = None) -> None:
         """Carry on with other forces, another road or another state, of the same bodies."""
-        self.system, self.road = system, road
+        self.system, self.lanes, self.road = system, in_lanes(system), road
         if y is not None:
             self.y = y.copy()
         self._stiffness = self._stiffest_rate()
@@ -124,7 +125,7 @@ class Integration:
 
     def _stiffest_rate(self) -> float:
         """Largest −λ of the system linearised where it is now, 1/s."""
-        return stiffest_rate(self.system, self.road, self.t, self.y, self._work, self._stages, self._spare[0])
+        return stiffest_rate(self.lanes, self.road, self.t, self.y, self._work, self._stages, self._spare[0])
 
     def _longest(self) -> float:
         """No step runs past an obstacle, or leaves the stepper's stability (of a system that is stiffer than its steps
@@ -138,7 +139,7 @@ class Integration:
         """Carry on until t ≥ t_stop, the end, trouble, or 5000 steps; the GIL is free meanwhile."""
         t_stop = min(t_stop, self.duration)
         common = (
-            self.system,
+            self.lanes,
             self.road,
             self._work,
             self.samples,
@@ -165,7 +166,7 @@ class Integration:
         dy = self._stages[0]
 
         def right_hand_side(t: float, y: np.ndarray) -> np.ndarray:
-            rates(self.system, self.road, t, y, dy, self._work)
+            rates(self.lanes, self.road, t, y, dy, self._work)
             return dy.copy()
 
         wanted = np.arange(count[SAMPLES], count[TAKEN] + len(self.samples.residual)) / self.rate
@@ -187,7 +188,7 @@ class Integration:
         reached = solution.t[-1]
         for t in wanted[wanted <= reached + 1e-12]:
             record(
-                self.system,
+                self.lanes,
                 self.road,
                 t,
                 solution.sol(min(t, reached)),
@@ -203,7 +204,7 @@ class Integration:
         count[EVALUATIONS] += solution.nfev
         if len(solution.t) > 1:
             time[SMALLEST] = min(time[SMALLEST], np.diff(solution.t).min())
-        found = trouble(self.y, len(self.system.mass))
+        found = trouble(self.lanes, self.y)
         if found:
             count[STATUS] = found
         elif not solution.success:

@@ -6,12 +6,15 @@ body before it like a mass matrix K (2×2) and a force f at the joint:
 
     λ = K a_P − f,    a_P: acceleration of the joint's point on the second body.
 
-A wheel, jointed at its centre, gives K = m I and f = its force; its spin stands alone. An arm from its pivot p to a
-point w that carries (K, f) gives what `_fold_arm` derives. With all chains folded the chassis is left with a 3×3
+A wheel, jointed at its centre, gives K = m I and f = its force; its spin stands alone. An arm from its pivot p to its
+tip that carries (K, f) gives what `_fold_arm` derives. With all chains folded the chassis is left with a 3×3
 system; going back out, each arm's rotation follows from its pivot's acceleration. With the paper's joint rows
 (first body minus second), a_P = acceleration of the point on the first body − γ.
 
-Flat state y: [x | y | θ | ẋ | ẏ | θ̇ | ξ | ∫e], with B, B, B, B, B, B, W and 1 entries, bodies in System's order.
+Chains do not touch each other but through the chassis: they are computed side by side (lanes.py). Every loop
+`for i in range(lanes.lanes)` is one that the compiler turns into instructions on several numbers: in it, all arrays are
+slices of one block, rows begin at constants, and there is no branch. Letters after a quantity tell whose it is: chassis
+c, road arm a, road wheel w, imaginary arm l, imaginary wheel v.
 """
 
 from __future__ import annotations
@@ -21,43 +24,8 @@ from typing import NamedTuple
 import numpy as np
 
 from model.compiled import compiled, inlined
-from model.road_table import nearest
-from model.vehicle import System
-
-
-class Work(NamedTuple):
-    """Scratch space of one right-hand side, and the contact forces it leaves behind. W wheels, n + m arms."""
-
-    f_n: np.ndarray  # (W,) normal loads, N
-    f_t: np.ndarray  # (W,) tractions, N
-    F: np.ndarray  # (1,) drive force, N
-    wheel: np.ndarray  # (3, W) force x, y and torque on each wheel, N, N m
-    tau: np.ndarray  # (n,) torque of the suspensions on each road arm, N m
-    arm: np.ndarray  # (n + m, 18) each arm's folded quantities, road arms first
-
-
-def make_work(system: System) -> Work:
-    """Scratch space for a system."""
-    wheels, arms = len(system.wheel), len(system.spring_j)
-    return Work(
-        np.zeros(wheels),
-        np.zeros(wheels),
-        np.zeros(1),
-        np.zeros((3, wheels)),
-        np.zeros(system.n),
-        np.zeros((arms, 18)),
-    )
-
-
-def pack(q: np.ndarray, v: np.ndarray, xi: np.ndarray, int_e: float) -> np.ndarray:
-    """The flat state of q, v (B, 3), ξ (W,), ∫e."""
-    return np.concatenate([q.T.ravel(), v.T.ravel(), xi, [int_e]])
-
-
-def unpack(y: np.ndarray, bodies: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-    """q, v (B, 3), ξ (W,), ∫e of a flat state."""
-    q, v = y[: 3 * bodies].reshape(3, bodies).T, y[3 * bodies : 6 * bodies].reshape(3, bodies).T
-    return q, v, y[6 * bodies : -1], float(y[-1])
+from model.contact import block, contact_forces
+from model.lanes import INT_E, LANES, SCRATCH_SIZE, SPEED, C, P, W, Y
 
 
 @inlined
@@ -97,37 +65,25 @@ def cos_sin(angle):
             )
         )
     )
-    quadrant = int(quarters) & 3
-    swapped = quadrant & 1
-    cos, sin = (sin if swapped else cos), (cos if swapped else sin)
-    return (-cos if quadrant in (1, 2) else cos), (-sin if quadrant >= 2 else sin)
+    half = 0.5 * quarters
+    odd = half != np.floor(half)
+    quadrant = quarters - 4.0 * np.floor(0.25 * quarters)
+    cos, sin = (sin if odd else cos), (cos if odd else sin)
+    return (-cos if (quadrant == 1.0) | (quadrant == 2.0) else cos), (-sin if quadrant >= 2.0 else sin)
 
 
 @inlined
-def _beyond_linear(system, i, u, u_dot):
-    """What a road arm's progressive spring, rebound damping and stops add to eq. (1)."""
-    tau = system.k_s[i] * system.p[i] * u * u * u
-    if u_dot < 0.0:
-        tau += (system.c_rebound[i] - system.c_s[i]) * u_dot
-    if u > system.bump:
-        tau += max(0.0, system.k_stop * (u - system.bump) + system.c_stop * u_dot)
-    elif u < system.rebound:
-        tau += min(0.0, system.k_stop * (u - system.rebound) + system.c_stop * u_dot)
-    return tau
+def _fold_arm(m, I, p_x, p_y, tip_x, tip_y, K_xx, K_xy, K_yy, b_x, b_y, F_y, tau):
+    """An arm that carries (K, b = K γ + f) at its tip, seen from its pivot p (both from its centre of mass).
 
-
-@inlined
-def _fold_arm(m, I, p_x, p_y, w_x, w_y, K_xx, K_xy, K_yy, b_x, b_y, F_y, tau):
-    """An arm that carries (K, b = K γ + f) at w, seen from its pivot p (both from its centre of mass).
-
-    With d = w − p, ⊥ a turn by +90°, a its centre's and a_P its pivot's acceleration, a = a_P − θ̈ p⊥ and
+    With d = tip − p, ⊥ a turn by +90°, a its centre's and a_P its pivot's acceleration, a = a_P − θ̈ p⊥ and
         force:            λ_p = m a + λ_w − F,        λ_w = K (a_P + θ̈ d⊥) − b
         moment about p:   I θ̈ + d⊥·λ_w − p⊥·(m a − F) = τ
     so that θ̈ = (T − e·a_P)/J and λ_p = K_p a_P − f_p with
         e = K d⊥ − m p⊥,  J = I + d⊥·K d⊥ + m p²,  T = τ + d⊥·b − p⊥·F
         K_p = m I + K − e eᵀ/J,  f_p = b + F − e T/J.
     """
-    d_x, d_y = -(w_y - p_y), w_x - p_x  # d⊥
+    d_x, d_y = -(tip_y - p_y), tip_x - p_x  # d⊥
     Kd_x, Kd_y = K_xx * d_x + K_xy * d_y, K_xy * d_x + K_yy * d_y
     e_x, e_y = Kd_x + m * p_y, Kd_y - m * p_x
     over_J = 1.0 / (I + d_x * Kd_x + d_y * Kd_y + m * (p_x * p_x + p_y * p_y))
@@ -146,265 +102,254 @@ def _fold_arm(m, I, p_x, p_y, w_x, w_y, K_xx, K_xy, K_yy, b_x, b_y, F_y, tau):
 
 
 @inlined
-def contact_forces(system, road, y, dy, work):
-    """Eq. (4)–(7) for every wheel, and the drive's torques (section 2.2): fills work, ξ̇ and d/dt ∫e."""
-    bodies, wheels = len(system.mass), len(system.wheel)
-    r, k_t, c_t = system.r, system.k_t, system.c_t
-    total = 0.0
-    for k in range(wheels):
-        w = system.wheel[k]
-        _s, _h, n_x, n_y, d = nearest(road, y[w], y[bodies + w])
-        v_x, v_y, theta_dot = y[3 * bodies + w], y[4 * bodies + w], y[5 * bodies + w]
-        xi = y[6 * bodies + k]
-        z = r - d
-        f_n, f_t = 0.0, 0.0
-        if z > 0.0:
-            z_dot = -(v_x * n_x + v_y * n_y)
-            f_n = max(0.0, z * z * (system.k_n + system.c_n * z_dot))  # eq. (4)
-            p_dot = v_x * n_y - v_y * n_x + r * theta_dot
-            f_stick = -(k_t * xi + c_t * p_dot)  # eq. (5)
-            limit = system.mu * f_n
-            f_t = min(max(f_stick, -limit), limit)  # eq. (6)
-        dy[6 * bodies + k] = -(k_t * xi + f_t) / c_t  # eq. (7)
-        work.f_n[k], work.f_t[k] = f_n, f_t
-        work.wheel[0, k] = f_n * n_x + f_t * n_y
-        work.wheel[1, k] = f_n * n_y - f_t * n_x
-        work.wheel[2, k] = r * f_t
-        total += f_n
+def _torsion_bars(lanes, theta_c, omega_c, s, p, w):
+    """Torque on the road arms of a block, eq. (1), and what progressive spring, rebound damping and stops add to it."""
+    for i in range(lanes.lanes):
+        u, u_dot = theta_c - s[i + Y.theta_a], omega_c - s[i + Y.omega_a]
+        w[i + W.tau_a] = p[i + P.k_s] * u + p[i + P.c_s] * u_dot + p[i + P.tau_0]
+    if not lanes.linear:
+        for i in range(lanes.lanes):
+            u, u_dot = theta_c - s[i + Y.theta_a], omega_c - s[i + Y.omega_a]
+            tau = p[i + P.k_s] * p[i + P.p] * u * u * u + (p[i + P.c_rebound] - p[i + P.c_s]) * min(u_dot, 0.0)
+            if u > lanes.bump:
+                tau += max(0.0, lanes.k_stop * (u - lanes.bump) + lanes.c_stop * u_dot)
+            elif u < lanes.rebound:
+                tau += min(0.0, lanes.k_stop * (u - lanes.rebound) + lanes.c_stop * u_dot)
+            w[i + W.tau_a] += tau * p[i + P.road]
 
-    F, int_e_dot = 0.0, 0.0
-    if not system.prescribed:
-        e = system.v_ref - y[3 * bodies]
-        F = system.K_p * e + system.K_i * y[-1]
-        int_e_dot = e
-        if abs(F) > system.F_max:
-            F = np.copysign(system.F_max, F)
-            int_e_dot = 0.0
-        if total > 0.0:
-            for k in range(wheels):
-                work.wheel[2, k] -= r * F * work.f_n[k] / total
-    dy[-1] = int_e_dot
-    work.F[0] = F
-    return total
+
+class Chassis(NamedTuple):
+    """The chassis now."""
+
+    x: float
+    y: float
+    theta: float
+    v_x: float
+    v_y: float
+    omega: float
+    cos: float
+    sin: float
 
 
 @inlined
-def rates(system, road, t, y, dy, work):
-    """dy/dt of the flat state at time t; leaves loads, tractions and drive force in work."""
-    n, m = system.n, system.m
-    B = len(system.mass)
-    two_alpha, beta2 = 2.0 * system.alpha, system.beta * system.beta
-    x, h, theta = y[:B], y[B : 2 * B], y[2 * B : 3 * B]
-    v_x, v_y, omega = y[3 * B : 4 * B], y[4 * B : 5 * B], y[5 * B : 6 * B]
-    a_x, a_y, omega_dot = dy[3 * B : 4 * B], dy[4 * B : 5 * B], dy[5 * B : 6 * B]
-    for i in range(3 * B):
-        dy[i] = y[3 * B + i]
-    total = contact_forces(system, road, y, dy, work)
+def _fold_chains(lanes, c, s, p, w):
+    """Each chain of a block, leaves first, down to its pivot, and what it adds to the chassis's equations."""
+    two_alpha, beta2 = lanes.two_alpha, lanes.beta2
+    for i in range(lanes.lanes):
+        x_a, y_a, v_x_a, v_y_a = s[i + Y.x_a], s[i + Y.y_a], s[i + Y.v_x_a], s[i + Y.v_y_a]
+        x_w, y_w, v_x_w, v_y_w = s[i + Y.x_w], s[i + Y.y_w], s[i + Y.v_x_w], s[i + Y.v_y_w]
+        x_l, y_l, v_x_l, v_y_l = s[i + Y.x_l], s[i + Y.y_l], s[i + Y.v_x_l], s[i + Y.v_y_l]
+        theta_a, omega_a = s[i + Y.theta_a], s[i + Y.omega_a]
+        theta_l, omega_l = s[i + Y.theta_l], s[i + Y.omega_l]
+        tau_a, on_arm = w[i + W.tau_a], p[i + P.on_arm]
 
-    # Torsion bars of the road arms, eq. (1)
-    tau_chassis = 0.0
-    if not system.prescribed and total > 0.0:
-        tau_chassis = system.r * work.F[0]
-    for i in range(n):
-        arm = 1 + i
-        u, u_dot = theta[0] - theta[arm], omega[0] - omega[arm]
-        tau = system.k_s[i] * u + system.c_s[i] * u_dot + system.tau_0[i]
-        if not system.linear:
-            tau += _beyond_linear(system, i, u, u_dot)
-        work.tau[i] = tau
-        tau_chassis -= tau
+        # Spring of the imaginary arm, eq. (2), and what leans on it, eq. (3)
+        u = c.theta + on_arm * (theta_a - c.theta) - theta_l
+        u_dot = c.omega + on_arm * (omega_a - c.omega) - omega_l
+        tau_l = p[i + P.k_sl] * u + p[i + P.c_sl] * u_dot + p[i + P.tau_0l]
+        tau_c = -tau_a - (1.0 - on_arm) * tau_l
+        tau_a -= on_arm * tau_l
 
-    # Leaves first: fold imaginary wheel i into imaginary arm i
-    for i in range(m):
-        link, end = 1 + 2 * n + i, 1 + 2 * n + m + i
-        s, base = n + i, system.spring_i[n + i]
-        tau = (
-            system.k_s[s] * (theta[base] - theta[link]) + system.c_s[s] * (omega[base] - omega[link]) + system.tau_0[s]
-        )  # eq. (2)
-        if base == 0:
-            tau_chassis -= tau
-        else:
-            work.tau[i] -= tau  # eq. (3)
-        cos, sin = cos_sin(theta[link])
-        u = system.u_j[2 * n + i]
-        p_x, p_y = cos * u[0] - sin * u[1], sin * u[0] + cos * u[1]
-        u = system.u_i[2 * n + m + i]
-        w_x, w_y = cos * u[0] - sin * u[1], sin * u[0] + cos * u[1]
-        # γ at the imaginary wheel's centre: first body the arm
-        w = omega[link]
-        C_x, C_y = x[link] + w_x - x[end], h[link] + w_y - h[end]
-        C_x_dot, C_y_dot = v_x[link] - w * w_y - v_x[end], v_y[link] + w * w_x - v_y[end]
-        gamma_x = w * w * w_x - two_alpha * C_x_dot - beta2 * C_x
-        gamma_y = w * w * w_y - two_alpha * C_y_dot - beta2 * C_y
-        m_v, m_l = system.mass[end], system.mass[link]
-        b_x = m_v * gamma_x + work.wheel[0, n + i]
-        b_y = m_v * gamma_y + work.wheel[1, n + i] - system.weight[end]
+        # Imaginary wheel into imaginary arm; γ at the wheel's centre: first body the arm
+        cos, sin = cos_sin(theta_l)
+        p_x, p_y = cos * p[i + P.p_x_l] - sin * p[i + P.p_y_l], sin * p[i + P.p_x_l] + cos * p[i + P.p_y_l]
+        tip_x = cos * p[i + P.tip_x_l] - sin * p[i + P.tip_y_l]
+        tip_y = sin * p[i + P.tip_x_l] + cos * p[i + P.tip_y_l]
+        C_x, C_y = x_l + tip_x - s[i + Y.x_v], y_l + tip_y - s[i + Y.y_v]
+        C_x_dot, C_y_dot = v_x_l - omega_l * tip_y - s[i + Y.v_x_v], v_y_l + omega_l * tip_x - s[i + Y.v_y_v]
+        gamma_x = omega_l * omega_l * tip_x - two_alpha * C_x_dot - beta2 * C_x
+        gamma_y = omega_l * omega_l * tip_y - two_alpha * C_y_dot - beta2 * C_y
+        drift_l = max(abs(C_x), abs(C_y))
+        m_v = p[i + P.m_v]
+        b_x = m_v * gamma_x + w[i + W.F_x_v]
+        b_y = m_v * gamma_y + w[i + W.F_y_v] - p[i + P.weight_v]
         K_xx, K_xy, K_yy, f_x, f_y, e_x, e_y, T = _fold_arm(
-            m_l, system.inertia[link], p_x, p_y, w_x, w_y, m_v, 0.0, m_v, b_x, b_y, -system.weight[link], tau
+            p[i + P.m_l], p[i + P.I_l], p_x, p_y, tip_x, tip_y, m_v, 0.0, m_v, b_x, b_y, -p[i + P.weight_l], tau_l
         )
-        _remember(work.arm[n + i], p_x, p_y, w_x, w_y, gamma_x, gamma_y, e_x, e_y, T, K_xx, K_xy, K_yy, f_x, f_y)
+        w[i + W.p_x_l], w[i + W.p_y_l], w[i + W.tip_x_l], w[i + W.tip_y_l] = p_x, p_y, tip_x, tip_y
+        w[i + W.gamma_x_l], w[i + W.gamma_y_l] = gamma_x, gamma_y
+        w[i + W.e_x_l], w[i + W.e_y_l], w[i + W.T_l] = e_x, e_y, T
 
-    # Fold each chain into its road arm, and the road arms into the chassis
-    cos, sin = cos_sin(theta[0])
-    w0 = omega[0]
-    M_xx, M_xy, M_yy = system.mass[0], 0.0, system.mass[0]
-    M_xt, M_yt, M_tt = 0.0, 0.0, system.inertia[0]
-    Q_x, Q_y, Q_t = 0.0, -system.weight[0], tau_chassis
-    for i in range(n):
-        arm, wheel = 1 + i, 1 + n + i
-        m_w, m_a = system.mass[wheel], system.mass[arm]
-        K_xx, K_xy, K_yy = m_w, 0.0, m_w
-        f_x, f_y = work.wheel[0, i], work.wheel[1, i] - system.weight[wheel]
-        if i < m:
-            link = 1 + 2 * n + i
-            held = work.arm[n + i]
-            # γ at the road wheel's centre: first body the wheel
-            w = omega[link]
-            p_x, p_y = held[0], held[1]
-            C_x, C_y = x[wheel] - x[link] - p_x, h[wheel] - h[link] - p_y
-            C_x_dot, C_y_dot = v_x[wheel] - v_x[link] + w * p_y, v_y[wheel] - v_y[link] - w * p_x
-            gamma_x = -w * w * p_x - two_alpha * C_x_dot - beta2 * C_x
-            gamma_y = -w * w * p_y - two_alpha * C_y_dot - beta2 * C_y
-            held[14], held[15] = gamma_x, gamma_y
-            K_xx, K_xy, K_yy = K_xx + held[9], held[10], K_yy + held[11]
-            f_x += held[9] * gamma_x + held[10] * gamma_y + held[12]
-            f_y += held[10] * gamma_x + held[11] * gamma_y + held[13]
-        c, s_ = cos_sin(theta[arm])
-        u = system.u_j[i]
-        p_x, p_y = c * u[0] - s_ * u[1], s_ * u[0] + c * u[1]
-        u = system.u_i[n + i]
-        w_x, w_y = c * u[0] - s_ * u[1], s_ * u[0] + c * u[1]
-        # γ at the wheel's centre: first body the arm
-        w = omega[arm]
-        C_x, C_y = x[arm] + w_x - x[wheel], h[arm] + w_y - h[wheel]
-        C_x_dot, C_y_dot = v_x[arm] - w * w_y - v_x[wheel], v_y[arm] + w * w_x - v_y[wheel]
-        gamma_x = w * w * w_x - two_alpha * C_x_dot - beta2 * C_x
-        gamma_y = w * w * w_y - two_alpha * C_y_dot - beta2 * C_y
+        # … onto the road wheel's centre; γ there: first body the wheel
+        C_x, C_y = x_w - x_l - p_x, y_w - y_l - p_y
+        C_x_dot, C_y_dot = v_x_w - v_x_l + omega_l * p_y, v_y_w - v_y_l - omega_l * p_x
+        gamma_x = -omega_l * omega_l * p_x - two_alpha * C_x_dot - beta2 * C_x
+        gamma_y = -omega_l * omega_l * p_y - two_alpha * C_y_dot - beta2 * C_y
+        drift_l = max(drift_l, max(abs(C_x), abs(C_y)))
+        w[i + W.at_pivot_x_l], w[i + W.at_pivot_y_l] = gamma_x, gamma_y
+        f_x += K_xx * gamma_x + K_xy * gamma_y + w[i + W.F_x_w]
+        f_y += K_xy * gamma_x + K_yy * gamma_y + w[i + W.F_y_w] - p[i + P.weight_w]
+        K_xx, K_yy = K_xx + p[i + P.m_w], K_yy + p[i + P.m_w]
+
+        # Road wheel into road arm; γ at the wheel's centre: first body the arm
+        cos, sin = cos_sin(theta_a)
+        p_x, p_y = cos * p[i + P.p_x_a] - sin * p[i + P.p_y_a], sin * p[i + P.p_x_a] + cos * p[i + P.p_y_a]
+        tip_x = cos * p[i + P.tip_x_a] - sin * p[i + P.tip_y_a]
+        tip_y = sin * p[i + P.tip_x_a] + cos * p[i + P.tip_y_a]
+        C_x, C_y = x_a + tip_x - x_w, y_a + tip_y - y_w
+        C_x_dot, C_y_dot = v_x_a - omega_a * tip_y - v_x_w, v_y_a + omega_a * tip_x - v_y_w
+        gamma_x = omega_a * omega_a * tip_x - two_alpha * C_x_dot - beta2 * C_x
+        gamma_y = omega_a * omega_a * tip_y - two_alpha * C_y_dot - beta2 * C_y
+        drift_a = max(abs(C_x), abs(C_y))
         b_x = K_xx * gamma_x + K_xy * gamma_y + f_x
         b_y = K_xy * gamma_x + K_yy * gamma_y + f_y
         K_xx, K_xy, K_yy, f_x, f_y, e_x, e_y, T = _fold_arm(
-            m_a, system.inertia[arm], p_x, p_y, w_x, w_y, K_xx, K_xy, K_yy, b_x, b_y, -system.weight[arm], work.tau[i]
+            p[i + P.m_a], p[i + P.I_a], p_x, p_y, tip_x, tip_y, K_xx, K_xy, K_yy, b_x, b_y, -p[i + P.weight_a], tau_a
         )
-        held = work.arm[i]
-        _remember(held, p_x, p_y, w_x, w_y, gamma_x, gamma_y, e_x, e_y, T, K_xx, K_xy, K_yy, f_x, f_y)
-        # γ at the pivot: first body the chassis
-        u = system.u_i[i]
-        c_x, c_y = cos * u[0] - sin * u[1], sin * u[0] + cos * u[1]
-        C_x, C_y = x[0] + c_x - x[arm] - p_x, h[0] + c_y - h[arm] - p_y
-        C_x_dot = v_x[0] - w0 * c_y - v_x[arm] + w * p_y
-        C_y_dot = v_y[0] + w0 * c_x - v_y[arm] - w * p_x
-        gamma_x = w0 * w0 * c_x - w * w * p_x - two_alpha * C_x_dot - beta2 * C_x
-        gamma_y = w0 * w0 * c_y - w * w * p_y - two_alpha * C_y_dot - beta2 * C_y
-        held[14], held[15], held[16], held[17] = gamma_x, gamma_y, c_x, c_y
+        w[i + W.p_x_a], w[i + W.p_y_a], w[i + W.tip_x_a], w[i + W.tip_y_a] = p_x, p_y, tip_x, tip_y
+        w[i + W.gamma_x_a], w[i + W.gamma_y_a] = gamma_x, gamma_y
+        w[i + W.e_x_a], w[i + W.e_y_a], w[i + W.T_a] = e_x, e_y, T
+
+        # … onto the chassis; γ at the pivot: first body the chassis
+        c_x, c_y = c.cos * p[i + P.c_x] - c.sin * p[i + P.c_y], c.sin * p[i + P.c_x] + c.cos * p[i + P.c_y]
+        C_x, C_y = c.x + c_x - x_a - p_x, c.y + c_y - y_a - p_y
+        C_x_dot = c.v_x - c.omega * c_y - v_x_a + omega_a * p_y
+        C_y_dot = c.v_y + c.omega * c_x - v_y_a - omega_a * p_x
+        gamma_x = c.omega * c.omega * c_x - omega_a * omega_a * p_x - two_alpha * C_x_dot - beta2 * C_x
+        gamma_y = c.omega * c.omega * c_y - omega_a * omega_a * p_y - two_alpha * C_y_dot - beta2 * C_y
+        drift_a = max(drift_a, max(abs(C_x), abs(C_y)))
+        w[i + W.at_pivot_x_a], w[i + W.at_pivot_y_a], w[i + W.c_x], w[i + W.c_y] = gamma_x, gamma_y, c_x, c_y
+        w[i + W.drift] = max(drift_a * p[i + P.road], drift_l * p[i + P.imaginary])
+
         # λ_p = K (a + θ̈ c⊥) − b on the chassis at c
         b_x = K_xx * gamma_x + K_xy * gamma_y + f_x
         b_y = K_xy * gamma_x + K_yy * gamma_y + f_y
         Kc_x, Kc_y = -K_xx * c_y + K_xy * c_x, -K_xy * c_y + K_yy * c_x
-        M_xx, M_xy, M_yy = M_xx + K_xx, M_xy + K_xy, M_yy + K_yy
-        M_xt, M_yt, M_tt = M_xt + Kc_x, M_yt + Kc_y, M_tt - c_y * Kc_x + c_x * Kc_y
-        Q_x, Q_y, Q_t = Q_x + b_x, Q_y + b_y, Q_t - c_y * b_x + c_x * b_y
+        w[i + W.M_xx], w[i + W.M_xy], w[i + W.M_yy] = K_xx, K_xy, K_yy
+        w[i + W.M_xt], w[i + W.M_yt], w[i + W.M_tt] = Kc_x, Kc_y, c_x * Kc_y - c_y * Kc_x
+        w[i + W.Q_x], w[i + W.Q_y], w[i + W.Q_t] = b_x, b_y, tau_c - c_y * b_x + c_x * b_y
+
+
+@inlined
+def _back_out(lanes, a_x_c, a_y_c, alpha_c, turning, s, ds, p, w):
+    """All accelerations of a block from the chassis's; `turning`: the drive's torque for each newton of load, m."""
+    for i in range(lanes.lanes):
+        road, imaginary = p[i + P.road], p[i + P.imaginary]
+        A_x = a_x_c - alpha_c * w[i + W.c_y] - w[i + W.at_pivot_x_a]
+        A_y = a_y_c + alpha_c * w[i + W.c_x] - w[i + W.at_pivot_y_a]
+        alpha = w[i + W.T_a] - w[i + W.e_x_a] * A_x - w[i + W.e_y_a] * A_y
+        a_x, a_y = A_x + alpha * w[i + W.p_y_a], A_y - alpha * w[i + W.p_x_a]
+        ds[i + Y.v_x_a], ds[i + Y.v_y_a], ds[i + Y.omega_a] = road * a_x, road * a_y, road * alpha
+        a_x -= alpha * w[i + W.tip_y_a] + w[i + W.gamma_x_a]
+        a_y += alpha * w[i + W.tip_x_a] - w[i + W.gamma_y_a]
+        ds[i + Y.v_x_w], ds[i + Y.v_y_w] = road * a_x, road * a_y
+        ds[i + Y.omega_w] = (lanes.r * w[i + W.f_t_w] - turning * w[i + W.f_n_w]) * p[i + P.over_I_w]
+
+        A_x, A_y = a_x - w[i + W.at_pivot_x_l], a_y - w[i + W.at_pivot_y_l]
+        alpha = w[i + W.T_l] - w[i + W.e_x_l] * A_x - w[i + W.e_y_l] * A_y
+        a_x, a_y = A_x + alpha * w[i + W.p_y_l], A_y - alpha * w[i + W.p_x_l]
+        ds[i + Y.v_x_l], ds[i + Y.v_y_l], ds[i + Y.omega_l] = imaginary * a_x, imaginary * a_y, imaginary * alpha
+        a_x -= alpha * w[i + W.tip_y_l] + w[i + W.gamma_x_l]
+        a_y += alpha * w[i + W.tip_x_l] - w[i + W.gamma_y_l]
+        ds[i + Y.v_x_v], ds[i + Y.v_y_v] = imaginary * a_x, imaginary * a_y
+        ds[i + Y.omega_v] = (lanes.r * w[i + W.f_t_v] - turning * w[i + W.f_n_v]) * p[i + P.over_I_v]
+    for i in range(lanes.lanes):
+        ds[i + Y.x_a], ds[i + Y.y_a], ds[i + Y.theta_a] = s[i + Y.v_x_a], s[i + Y.v_y_a], s[i + Y.omega_a]
+        ds[i + Y.x_w], ds[i + Y.y_w], ds[i + Y.theta_w] = s[i + Y.v_x_w], s[i + Y.v_y_w], s[i + Y.omega_w]
+        ds[i + Y.x_l], ds[i + Y.y_l], ds[i + Y.theta_l] = s[i + Y.v_x_l], s[i + Y.v_y_l], s[i + Y.omega_l]
+        ds[i + Y.x_v], ds[i + Y.y_v], ds[i + Y.theta_v] = s[i + Y.v_x_v], s[i + Y.v_y_v], s[i + Y.omega_v]
+
+
+@compiled
+def rates(lanes, road, t, y, dy, work):
+    """dy/dt of the flat state at time t; leaves loads, tractions and drive force in work."""
+    count = len(work.blocks) // SCRATCH_SIZE
+    total = contact_forces(lanes, road, y, dy, work)
+
+    # The drive (section 2.2): a force F by speed, as torques on the wheels in proportion to their loads
+    F, int_e_dot, turning, tau_c = 0.0, 0.0, 0.0, 0.0
+    if not lanes.prescribed:
+        e = lanes.v_ref - y[SPEED]
+        F, int_e_dot = lanes.K_p * e + lanes.K_i * y[INT_E], e
+        if abs(F) > lanes.F_max:
+            F, int_e_dot = np.copysign(lanes.F_max, F), 0.0
+        if total > 0.0:
+            turning, tau_c = lanes.r * F / total, lanes.r * F
+    work.F[0] = F
+
+    cos, sin = cos_sin(y[2])
+    c = Chassis(y[0], y[1], y[2], y[3], y[4], y[5], cos, sin)
+    M_xx, M_xy, M_yy, M_xt, M_yt, M_tt = lanes.m_c, 0.0, lanes.m_c, 0.0, 0.0, lanes.I_c
+    Q_x, Q_y, Q_t = 0.0, -lanes.weight_c, tau_c
+    for b in range(count):  # in a loop of its own, or the compiler entangles it with the next and leaves the lanes
+        s, _, p, w = block(lanes, b, y, dy, work)
+        _torsion_bars(lanes, c.theta, c.omega, s, p, w)
+    for b in range(count):
+        s, _, p, w = block(lanes, b, y, dy, work)
+        _fold_chains(lanes, c, s, p, w)
+        for i in range(lanes.lanes):
+            M_xx, M_xy, M_yy = M_xx + w[i + W.M_xx], M_xy + w[i + W.M_xy], M_yy + w[i + W.M_yy]
+            M_xt, M_yt, M_tt = M_xt + w[i + W.M_xt], M_yt + w[i + W.M_yt], M_tt + w[i + W.M_tt]
+            Q_x, Q_y, Q_t = Q_x + w[i + W.Q_x], Q_y + w[i + W.Q_y], Q_t + w[i + W.Q_t]
 
     # The root: 3×3 for the chassis; with prescribed drive its a_x is given by eq. (14) and λ_45 balances that row
-    if system.prescribed:
-        a0_x = -two_alpha * (v_x[0] - system.v_ref) - beta2 * (x[0] - system.x_0 - system.v_ref * t)
+    if lanes.prescribed:
+        a_x = -lanes.two_alpha * (c.v_x - lanes.v_ref) - lanes.beta2 * (c.x - lanes.x_0 - lanes.v_ref * t)
     else:
         # Schur complement of the lower 2×2 block on the x row
         over = 1.0 / (M_yy * M_tt - M_yt * M_yt)
         s_y, s_t = (M_xy * M_tt - M_xt * M_yt) * over, (M_xt * M_yy - M_xy * M_yt) * over
-        a0_x = (Q_x - s_y * Q_y - s_t * Q_t) / (M_xx - s_y * M_xy - s_t * M_xt)
-    Q_y -= M_xy * a0_x
-    Q_t -= M_xt * a0_x
+        a_x = (Q_x - s_y * Q_y - s_t * Q_t) / (M_xx - s_y * M_xy - s_t * M_xt)
+    Q_y -= M_xy * a_x
+    Q_t -= M_xt * a_x
     over = 1.0 / (M_yy * M_tt - M_yt * M_yt)
-    a0_y = (Q_y * M_tt - Q_t * M_yt) * over
-    alpha_0 = (Q_t * M_yy - Q_y * M_yt) * over
-    a_x[0], a_y[0], omega_dot[0] = a0_x, a0_y, alpha_0
+    a_y, alpha = (Q_y * M_tt - Q_t * M_yt) * over, (Q_t * M_yy - Q_y * M_yt) * over
 
-    # Back out along the chains
-    for i in range(n):
-        arm, wheel = 1 + i, 1 + n + i
-        held = work.arm[i]
-        A_x = a0_x - alpha_0 * held[17] - held[14]
-        A_y = a0_y + alpha_0 * held[16] - held[15]
-        A_x, A_y = _back_out(held, A_x, A_y, arm, wheel, a_x, a_y, omega_dot)
-        omega_dot[wheel] = work.wheel[2, i] / system.inertia[wheel]
-        if i < m:
-            link, end = 1 + 2 * n + i, 1 + 2 * n + m + i
-            held = work.arm[n + i]
-            _back_out(held, A_x - held[14], A_y - held[15], link, end, a_x, a_y, omega_dot)
-            omega_dot[end] = work.wheel[2, n + i] / system.inertia[end]
-
-
-@inlined
-def _remember(held, p_x, p_y, w_x, w_y, gamma_x, gamma_y, e_x, e_y, T, K_xx, K_xy, K_yy, f_x, f_y):
-    held[0], held[1], held[2], held[3] = p_x, p_y, w_x, w_y
-    held[4], held[5], held[6], held[7], held[8] = gamma_x, gamma_y, e_x, e_y, T
-    held[9], held[10], held[11], held[12], held[13] = K_xx, K_xy, K_yy, f_x, f_y
-
-
-@inlined
-def _back_out(held, A_x, A_y, arm, wheel, a_x, a_y, omega_dot):
-    """From the pivot's acceleration: the arm's, and that of the wheel at its end (returned too)."""
-    theta_ddot = held[8] - held[6] * A_x - held[7] * A_y
-    a_x[arm], a_y[arm] = A_x + theta_ddot * held[1], A_y - theta_ddot * held[0]
-    omega_dot[arm] = theta_ddot
-    a_x[wheel] = a_x[arm] - theta_ddot * held[3] - held[4]
-    a_y[wheel] = a_y[arm] + theta_ddot * held[2] - held[5]
-    return a_x[wheel], a_y[wheel]
+    dy[0], dy[1], dy[2] = y[3], y[4], y[5]
+    dy[3], dy[4], dy[5] = a_x, a_y, alpha
+    dy[INT_E], dy[INT_E + 1] = int_e_dot, 0.0
+    for b in range(count):
+        s, ds, p, w = block(lanes, b, y, dy, work)
+        _back_out(lanes, a_x, a_y, alpha, turning, s, ds, p, w)
 
 
 @compiled
-def multipliers(system, dy, work, lam):
+def multipliers(lanes, dy, work, lam):
     """λ (rows of C) from the accelerations that `rates` left in dy: Newton's law from the leaves inwards."""
-    n, m = system.n, system.m
-    B = len(system.mass)
-    a_x, a_y = dy[3 * B : 4 * B], dy[4 * B : 5 * B]
+    n, m = lanes.n, lanes.m
     sum_x = 0.0
-    for i in range(n):
-        arm, wheel = 1 + i, 1 + n + i
+    for chain in range(n):
+        b, i = chain // LANES, chain % LANES
+        _, ds, p, w = block(lanes, b, dy, dy, work)
         l_x, l_y = 0.0, 0.0
-        if i < m:
-            link, end = 1 + 2 * n + i, 1 + 2 * n + m + i
-            l_x = system.mass[end] * a_x[end] - work.wheel[0, n + i]
-            l_y = system.mass[end] * a_y[end] + system.weight[end] - work.wheel[1, n + i]
-            row = 2 * (2 * n + m + i)
+        if chain < m:
+            l_x = p[i + P.m_v] * ds[i + Y.v_x_v] - w[i + W.F_x_v]
+            l_y = p[i + P.m_v] * ds[i + Y.v_y_v] + p[i + P.weight_v] - w[i + W.F_y_v]
+            row = 2 * (2 * n + m + chain)
             lam[row], lam[row + 1] = l_x, l_y
-            l_x += system.mass[link] * a_x[link]
-            l_y += system.mass[link] * a_y[link] + system.weight[link]
-            row = 2 * (2 * n + i)
+            l_x += p[i + P.m_l] * ds[i + Y.v_x_l]
+            l_y += p[i + P.m_l] * ds[i + Y.v_y_l] + p[i + P.weight_l]
+            row = 2 * (2 * n + chain)
             lam[row], lam[row + 1] = l_x, l_y
-        l_x += system.mass[wheel] * a_x[wheel] - work.wheel[0, i]
-        l_y += system.mass[wheel] * a_y[wheel] + system.weight[wheel] - work.wheel[1, i]
-        row = 2 * (n + i)
+        l_x += p[i + P.m_w] * ds[i + Y.v_x_w] - w[i + W.F_x_w]
+        l_y += p[i + P.m_w] * ds[i + Y.v_y_w] + p[i + P.weight_w] - w[i + W.F_y_w]
+        row = 2 * (n + chain)
         lam[row], lam[row + 1] = l_x, l_y
-        l_x += system.mass[arm] * a_x[arm]
-        l_y += system.mass[arm] * a_y[arm] + system.weight[arm]
-        lam[2 * i], lam[2 * i + 1] = l_x, l_y
+        l_x += p[i + P.m_a] * ds[i + Y.v_x_a]
+        l_y += p[i + P.m_a] * ds[i + Y.v_y_a] + p[i + P.weight_a]
+        lam[2 * chain], lam[2 * chain + 1] = l_x, l_y
         sum_x += l_x
-    if system.prescribed:
-        lam[-1] = -system.mass[0] * a_x[0] - sum_x
+    if lanes.prescribed:
+        lam[-1] = -lanes.m_c * dy[SPEED] - sum_x
         work.F[0] = -lam[-1]
 
 
-@inlined
-def _turned(angle, u):
-    """u turned by an angle; wheels, jointed at their centres (u = 0), may have turned far."""
-    if u[0] == 0.0 and u[1] == 0.0:
-        return 0.0, 0.0
-    cos, sin = cos_sin(angle)
-    return cos * u[0] - sin * u[1], sin * u[0] + cos * u[1]
+@compiled
+def constraint_residual(lanes, t, y, work):
+    """max |C(q, t)|, m, of the state whose rates were computed last."""
+    worst = 0.0
+    for b in range(len(work.blocks) // SCRATCH_SIZE):
+        for i in range(lanes.lanes):
+            worst = max(worst, work.blocks[b * SCRATCH_SIZE + W.drift + i])
+    if lanes.prescribed:
+        worst = max(worst, abs(y[0] - lanes.x_0 - lanes.v_ref * t))
+    return worst
 
 
 @compiled
-def constraint_residual(system, t, y):
-    """max |C(q, t)|, m."""
-    B = len(system.mass)
-    worst = 0.0
-    for joint in range(len(system.joint_i)):
-        i, j = system.joint_i[joint], system.joint_j[joint]
-        i_x, i_y = _turned(y[2 * B + i], system.u_i[joint])
-        j_x, j_y = _turned(y[2 * B + j], system.u_j[joint])
-        C_x, C_y = y[i] + i_x - y[j] - j_x, y[B + i] + i_y - y[B + j] - j_y
-        worst = max(worst, abs(C_x), abs(C_y))
-    if system.prescribed:
-        worst = max(worst, abs(y[0] - system.x_0 - system.v_ref * t))
-    return worst
+def loads(lanes, work, f_n, f_t):
+    """Normal loads and tractions (W,), N, that `rates` left in work."""
+    for wheel in range(lanes.n + lanes.m):
+        chain = wheel if wheel < lanes.n else wheel - lanes.n
+        at = chain // LANES * SCRATCH_SIZE + chain % LANES + (W.X_w if wheel < lanes.n else W.X_v)
+        f_n[wheel], f_t[wheel] = work.blocks[at + C.f_n], work.blocks[at + C.f_t]

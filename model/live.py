@@ -14,9 +14,11 @@ import numpy as np
 
 from model.config import Config
 from model.integrate import ADVICE, REASON, Integration, Samples, Status
+from model.lanes import SPEED, places, wheel_positions
 from model.live_road import LaidRoad, Shapes
 from model.road import build_road
-from model.road_table import REACH, RoadTable
+from model.road_search import RoadTable
+from model.road_table import REACH
 from model.simulate import starting_state, warm_up
 from model.trajectory import RunStatistics, Trajectory
 from model.vehicle import System, build_system
@@ -98,7 +100,7 @@ class LiveDrive:
     def _join(self) -> float:
         """Where a new road shape begins, m."""
         system = self._run.system
-        front = float(self._run.y[: len(system.mass)][system.road_wheels].max())
+        front = float(wheel_positions(system, self._run.y).max())
         ahead = max(JOIN_AHEAD, REACH * self.config.vehicle.road_wheels.radius)
         return float(np.ceil((front + ahead) / JOIN_EVERY)) * JOIN_EVERY
 
@@ -107,7 +109,7 @@ class LiveDrive:
 
         anew: its shapes are not those that were laid before, or the origin has moved.
         """
-        x, wheels = float(y[0]), y[: len(system.mass)][system.wheel]
+        x, wheels = float(y[0]), wheel_positions(system, y)
         radius = self.config.vehicle.road_wheels.radius
         if anew or x + SPARE > self._seen_to:
             oldest = float(self._past[0][1].q[0, system.chassis, 0]) if self._past else x
@@ -121,14 +123,14 @@ class LiveDrive:
     def _runs_out(self) -> bool:
         """Whether a wheel could come to an end of what is laid within a stride."""
         run, pieces = self._run, self._road.near.pieces
-        wheels = run.y[: len(run.system.mass)][run.system.wheel]
+        wheels = wheel_positions(run.system, run.y)
         spare = REACH * self._road.radius + self._stride(run.system, run.y)
         return bool(wheels.max() + spare > pieces[-1].nodes[-1] or wheels.min() - spare < pieces[0].nodes[0])
 
     @staticmethod
     def _stride(system: System, y: np.ndarray) -> float:
         """How far the vehicle goes in two strides, m: one, and what the last step runs over."""
-        return 2 * STRIDE * max(abs(float(y[3 * len(system.mass)])), abs(system.v_ref))
+        return 2 * STRIDE * max(abs(float(y[SPEED])), abs(system.v_ref))
 
     def advance(self, until: float) -> None:
         """Drive on to a time, s, at most CAPACITY samples away. A drive that diverged stands still."""
@@ -180,7 +182,7 @@ class LiveDrive:
     def _move_origin(self, by: float) -> None:
         run = self._run
         y = run.y.copy()
-        y[: len(run.system.mass)] -= by
+        y[places(run.system.n, run.system.m)[0][:, 0]] -= by
         self._shapes = self._shapes.moved(by)
         self.distance += by
         for _, samples in self._past:

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from model.road import Derivatives, Piece, Profile, Road
-from model.road_table import RoadTable
+from model.road_search import RoadTable
 
 BLEND = 3.0  # m over which a new shape takes the old one's place
 GAP = 20.0  # m of level road until a road with an end comes again

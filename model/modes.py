@@ -14,7 +14,8 @@ import numpy as np
 from model.config import Config
 from model.equations import rotation_rate
 from model.equilibrium import rest_pose
-from model.kernel import make_work, pack, rates
+from model.kernel import rates
+from model.lanes import coordinates, in_lanes, make_work, pack
 from model.road import Road, build_road
 from model.trajectory import RunStatistics, Trajectory, wheel_names
 from model.vehicle import System, build_system
@@ -143,21 +144,22 @@ def _eigen(system: System, q: np.ndarray, road: Road) -> tuple[np.ndarray, np.nd
     D = len(free)
     basis[: 3 * bodies, :D] = basis[3 * bodies : 6 * bodies, D : 2 * D] = motion
     basis[6 * bodies :, 2 * D :] = np.eye(wheels + 1)
-    rest = pack(q, np.zeros_like(q), np.zeros(wheels), 0.0)
-    work, table = make_work(system), road.table
+    rest = pack(system, q, np.zeros_like(q), np.zeros(wheels), 0.0)
+    lanes, work, table, place = in_lanes(system), make_work(system), road.table, coordinates(system)
 
-    def rate(state: np.ndarray) -> np.ndarray:
-        change = np.empty_like(state)
-        rates(system, table, 0.0, state, change, work)
-        return change[free_rates]
+    def rate(nudge: np.ndarray) -> np.ndarray:
+        state, change = rest.copy(), np.empty_like(rest)
+        state[place] += nudge
+        rates(lanes, table, 0.0, state, change, work)
+        return change[place][free_rates]
 
-    columns = [(rate(rest + NUDGE * nudge) - rate(rest - NUDGE * nudge)) / (2 * NUDGE) for nudge in basis.T]
+    columns = [(rate(NUDGE * nudge) - rate(-NUDGE * nudge)) / (2 * NUDGE) for nudge in basis.T]
     eigenvalues, vectors = np.linalg.eig(np.column_stack(columns))
     return eigenvalues, (motion @ vectors[:D]).T.reshape(-1, 3, bodies).swapaxes(1, 2)
 
 
 def _free_motions(system: System, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The D coordinates that may move by themselves (D,), and how all of them then move (3 B, D), in the flat state."""
+    """The D coordinates that may move by themselves (D,), and how all of them then move (3 B, D): all x, y, θ."""
     bodies = len(q)
     x, y, theta = np.split(np.arange(3 * bodies), 3)
     motion = np.eye(3 * bodies)

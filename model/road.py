@@ -18,7 +18,8 @@ from model import shapes
 from model.config import Config
 from model.profile import Derivatives, Piece, Profile
 from model.random_road import random_profile
-from model.road_table import CELLS_PER_RADIUS, RoadTable, nearest_points, tabulate
+from model.road_search import RoadTable, nearest_points
+from model.road_table import CELLS_PER_RADIUS, tabulate
 
 __all__ = ["Derivatives", "Piece", "Profile", "Road", "build_road"]
 

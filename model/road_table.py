@@ -1,13 +1,9 @@
-"""A road as quintics in cells, and the compiled search for the point nearest to a wheel's centre.
+"""The table of a road in which road_search.py finds the point nearest to a wheel: cells of quintics, bins of positions.
 
-D(s) = (s − X)² + (h(s) − Y)² is the squared distance from the centre P = (X, Y) to the profile; half its slope is
-g(s) = (s − X) + (h − Y) h′. Where the road is too gently curved for a wheel in contact to have two minima of D, a
-Halley iteration on g = 0 from s = X finds the one. Elsewhere all cells that can hold the lowest minimum are searched,
-so that the wheel bridges valleys tighter than itself.
-
-Which cells can, is found beforehand for all centres in a box: a bin of X, and of Y what a wheel in contact has that has
-not sunk in deeper than SEARCHED radii. For two points a and b, |P − a|² − |P − b|² is linear in P: where b is nearer
-than all of a cell from each of the box's corners, it is nearer from anywhere in the box, and the cell is left out.
+What is sought, and how, is said there. Which cells can hold the nearest point is found beforehand for all centres in a
+box: a bin of X, and of Y what a wheel in contact has that has not sunk in deeper than SEARCHED radii. For two points a
+and b, |P − a|² − |P − b|² is linear in P: where b is nearer than all of a cell from each of the box's corners, it is
+nearer from anywhere in the box, and the cell is left out.
 """
 
 from __future__ import annotations
@@ -16,7 +12,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from model.compiled import allocating, compiled, inlined
+from model.compiled import allocating, inlined
+from model.road_search import (
+    BIN_COLUMNS,
+    CEILING,
+    CELL_COLUMNS,
+    FINAL_STEP,
+    FLOOR,
+    GUESS,
+    GUESS_CELL,
+    GUESS_Y,
+    HEIGHT,
+    NEXT,
+    NODE,
+    TILT,
+    RoadTable,
+    quintic,
+)
 
 REACH = 1.5  # half-width of the table's search window, in wheel radii
 CELLS_PER_RADIUS = 8  # on level stretches, so that no minimum hides inside a long cell
@@ -28,30 +40,6 @@ FINAL_ERROR = 1e-12  # m: of the contact point along the road
 
 
 Row = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # x, h, h′, h″ at nodes
-
-
-class RoadTable(NamedTuple):
-    """Cells c = 0…C−1 between nodes; h = Σ_k coefficients[c, k] u^k, u = x − node[c]. Bins are of equal width."""
-
-    node: np.ndarray  # (C + 1,) m; the last is NaN
-    height: np.ndarray  # (C + 1,) h at the nodes, m
-    coefficients: np.ndarray  # (C, 6)
-    slack: np.ndarray  # (C,) how far D can dip below its values at the cell's ends, m²
-    bin_start: float
-    bins_per_metre: float
-    first_cell: np.ndarray  # (bins,) the cell in which a bin begins
-    ceiling: np.ndarray  # (bins,) a centre above this does not touch, m
-    floor: np.ndarray  # (bins,) down to here the stretches hold the nearest point, m
-    first_stretch: np.ndarray  # (bins + 1,) where in `stretch` a bin's begin
-    stretch: np.ndarray  # (stretches, 2) first and last cell of each
-    safe: np.ndarray  # (bins,) one minimum only, for every wheel in contact
-    guess: np.ndarray  # (bins + 1, 4) contact of a wheel above a bin's edge that has sunk in a little: s, its slope
-    # ds/dX × the bin's width, Y, ds/dY; m
-    final_step: np.ndarray  # (bins,) m: a Halley step shorter than this is the last
-    radius: float
-    reach: float
-    repeat_from: float
-    period: float  # 0: does not repeat
 
 
 def tabulate(rows: list[Row], period: float, radius: float) -> RoadTable:
@@ -99,24 +87,24 @@ def tabulate(rows: list[Row], period: float, radius: float) -> RoadTable:
     last_step = np.clip(np.cbrt(FINAL_ERROR / np.maximum(wildness, 1e-12)), 1e-5, 2e-3)
     cells = Cells(node, height, coefficients, corner, bulge, slack_above, last_step)
     ceiling, floor, safe = _judge_bins(edges, cells, radius)
-    guess, final_step = _guess_contacts(edges, cells, safe, radius)
     first_stretch, stretch = _find_stretches(edges, cells, ceiling, floor, radius)
-    node[-1] = np.nan  # which no x exceeds: the first and last cells are level and reach on without end
+
+    cell = np.zeros((len(node), CELL_COLUMNS))
+    cell[:, NODE], cell[:, HEIGHT], cell[:-1, HEIGHT + 1 : NEXT] = node, height, coefficients[:, 1:]
+    cell[:, NEXT] = np.inf  # of the last but one too: the first and last cells are level and reach on without end
+    cell[:-2, NEXT] = node[1:-1]
+    bin = np.empty((bins, BIN_COLUMNS))
+    bin[:, CEILING], bin[:, FLOOR] = ceiling, floor
+    _guess_contacts(edges, cells, safe, radius, bin)
     return RoadTable(
-        node=node,
-        height=height,
-        coefficients=coefficients,
+        cell=cell,
         slack=slack,
-        bin_start=float(edges[0]),
-        bins_per_metre=bins / float(edges[-1] - edges[0]),
+        bin=bin,
         first_cell=first_cell,
-        ceiling=ceiling,
-        floor=floor,
         first_stretch=first_stretch,
         stretch=stretch,
-        safe=safe,
-        guess=guess,
-        final_step=final_step,
+        bin_start=float(edges[0]),
+        bins_per_metre=bins / float(edges[-1] - edges[0]),
         radius=radius,
         reach=reach,
         repeat_from=repeat_from,
@@ -200,7 +188,7 @@ def _judge_bins(edges, cells, radius):
             safe[b] = not corner[c + 1] or node[c + 1] > right + radius
             size = node[c + 1] - node[c]
             for u in (0.0, 0.5 * size, size):
-                h, h1, h2, _ = _quintic(coefficients, c, u)
+                h, h1, h2, _ = _height(coefficients, c, u)
                 if 1.0 + h1 * h1 - (highest - h) * max(h2, 0.0) < SAFE:
                     safe[b] = False
             c += 1
@@ -210,44 +198,56 @@ def _judge_bins(edges, cells, radius):
 
 
 @allocating
-def _guess_contacts(edges, cells, safe, radius):
-    """RoadTable's `guess` and `final_step`."""
+def _guess_contacts(edges, cells, safe, radius, bin):
+    """Fills the columns of a guess and the final step of each bin.
+
+    The guess is cubic between what is found above the bin's edges, for wheels that have sunk in a little, and linear in
+    how much lower or higher they are.
+    """
     node, coefficients, last_step = cells.node, cells.coefficients, cells.last_step
     bins, count = len(edges) - 1, len(node) - 1
     width = edges[1] - edges[0]
-    guess = np.zeros((bins + 1, 4))
-    final_step = np.empty(bins)
     d = (1.0 - SINKING) * radius
+    s_a, slope_a, Y_a, tilt_a = edges[0], width, 0.0, 0.0
     under, before = 0, 0
     for b in range(bins + 1):
         s, slope = edges[b], 1.0
-        if 0 < b < bins and safe[b - 1] and safe[b]:
-            for _ in range(8):  # Newton on: the point at s, d along its normal, lies above the edge
-                while under > 0 and s < node[under]:
-                    under -= 1
-                while under < count - 1 and s >= node[under + 1]:
-                    under += 1
-                h, h1, h2, _h3 = _quintic(coefficients, under, s - node[under])
-                length = np.sqrt(1.0 + h1 * h1)
-                slope = 1.0 / (1.0 - d * h2 / length**3)
-                step = (s - d * h1 / length - edges[b]) * slope
-                s -= step
-                if abs(step) < 1e-9:
-                    break
-            guess[b, 2] = h + d / length
-            guess[b, 3] = h1 / (1.0 + h1 * h1 - d * h2 / length)
-        else:
+        sought = 0 < b < bins and safe[b - 1] and safe[b]
+        for _ in range(8 if sought else 1):  # Newton on: the point at s, d along its normal, lies above the edge
             while under > 0 and s < node[under]:
                 under -= 1
             while under < count - 1 and s >= node[under + 1]:
                 under += 1
-            guess[b, 2] = _quintic(coefficients, under, s - node[under])[0] + d
-        guess[b, 0], guess[b, 1] = s, slope * width
+            h, h1, h2, _h3 = _height(coefficients, under, s - node[under])
+            if not sought:
+                h1 = h2 = 0.0
+            length = np.sqrt(1.0 + h1 * h1)
+            slope = 1.0 / (1.0 - d * h2 / length**3)
+            step = (s - d * h1 / length - edges[b]) * slope
+            s -= step
+            if abs(step) < 1e-9:
+                break
+        Y_b, tilt_b = h + d / length, h1 / (1.0 + h1 * h1 - d * h2 / length)
+        slope_b = slope * width
         if b > 0:
+            rise = s - s_a
+            bin[b - 1, GUESS], bin[b - 1, GUESS + 1] = s_a, slope_a
+            bin[b - 1, GUESS + 2] = 3 * rise - 2 * slope_a - slope_b
+            bin[b - 1, GUESS + 3] = slope_a + slope_b - 2 * rise
+            bin[b - 1, GUESS_Y], bin[b - 1, GUESS_Y + 1] = Y_a, Y_b - Y_a
+            bin[b - 1, TILT], bin[b - 1, TILT + 1] = tilt_a, tilt_b - tilt_a
+            bin[b - 1, GUESS_CELL] = before
             low, high = max(min(before, under) - 1, 0), min(max(before, under) + 2, count)
-            final_step[b - 1] = last_step[low:high].min()
+            bin[b - 1, FINAL_STEP] = last_step[low:high].min() if safe[b - 1] else -1.0
+        s_a, slope_a, Y_a, tilt_a = s, slope_b, Y_b, tilt_b
         before = under
-    return guess, final_step
+
+
+@inlined
+def _height(coefficients, c, u):
+    """h, h′, h″, h‴ at u in cell c."""
+    k = coefficients[c]
+    return quintic(k[0], k[1], k[2], k[3], k[4], k[5], u)
 
 
 @allocating
@@ -307,179 +307,3 @@ def _find_stretches(edges, cells, ceiling, floor, radius):
             end = c
     first_stretch[bins] = found
     return first_stretch, stretch[:found].copy()
-
-
-@inlined
-def _quintic(coefficients, c, u):
-    """h, h′, h″, h‴ at u in cell c."""
-    c0, c1, c2 = coefficients[c, 0], coefficients[c, 1], coefficients[c, 2]
-    c3, c4, c5 = coefficients[c, 3], coefficients[c, 4], coefficients[c, 5]
-    h = c0 + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * c5))))
-    h1 = c1 + u * (2 * c2 + u * (3 * c3 + u * (4 * c4 + u * (5 * c5))))
-    h2 = 2 * c2 + u * (6 * c3 + u * (12 * c4 + u * (20 * c5)))
-    h3 = 6 * c3 + u * (24 * c4 + u * (60 * c5))
-    return h, h1, h2, h3
-
-
-@inlined
-def _bin(road, x):
-    b = int((x - road.bin_start) * road.bins_per_metre)
-    return min(max(b, 0), len(road.first_cell) - 1)
-
-
-@inlined
-def _cell(road, x):
-    c = road.first_cell[_bin(road, x)]
-    while x >= road.node[c + 1]:
-        c += 1
-    return c
-
-
-@compiled
-def _search_all_cells(road, X, Y):
-    """The lowest minimum of D within reach of X, whatever the profile's shape: (s, h)."""
-    first, last = _cell(road, X - road.reach), _cell(road, X + road.reach)
-    D, s, h = _search_nodes(road, X, Y, first, last, np.inf, X, 0.0)
-    _D, s, h = _search_cells(road, X, Y, first, last, D, s, h)
-    return s, h
-
-
-@compiled
-def _search_stretches(road, X, Y, b):
-    """The lowest minimum of D in a bin's stretches: (s, h)."""
-    D, s, h = np.inf, X, 0.0
-    for k in range(road.first_stretch[b], road.first_stretch[b + 1]):
-        D, s, h = _search_nodes(road, X, Y, road.stretch[k, 0], road.stretch[k, 1], D, s, h)
-    for k in range(road.first_stretch[b], road.first_stretch[b + 1]):
-        D, s, h = _search_cells(road, X, Y, road.stretch[k, 0], road.stretch[k, 1], D, s, h)
-    return s, h
-
-
-@inlined
-def _search_nodes(road, X, Y, first, last, best_D, best_s, best_h):
-    """The nearest node of cells first…last, or what was nearer before: (D, s, h)."""
-    node, height = road.node, road.height
-    for k in range(first, last + 2):
-        D = (node[k] - X) ** 2 + (height[k] - Y) ** 2
-        if D < best_D:
-            best_D, best_s, best_h = D, node[k], height[k]
-    return best_D, best_s, best_h
-
-
-@inlined
-def _search_cells(road, X, Y, first, last, best_D, best_s, best_h):
-    """The lowest minimum of D inside cells first…last, or what was nearer before: (D, s, h)."""
-    node, height = road.node, road.height
-    for c in range(first, last + 1):
-        D_a = (node[c] - X) ** 2 + (height[c] - Y) ** 2
-        D_b = (node[c + 1] - X) ** 2 + (height[c + 1] - Y) ** 2
-        if min(D_a, D_b) - road.slack[c] > best_D:
-            continue
-        a, b = 0.0, X + road.reach - node[c]
-        if c == 0:
-            a = min(a, X - road.reach - node[c])
-        if node[c + 1] - node[c] < b:
-            b = node[c + 1] - node[c]
-        h, h1, h2, _ = _quintic(road.coefficients, c, a)
-        g_a = node[c] + a - X + (h - Y) * h1
-        h, h1, h2, _ = _quintic(road.coefficients, c, b)
-        g_b = node[c] + b - X + (h - Y) * h1
-        if not (g_a < 0.0 < g_b):
-            continue
-        u = (a * g_b - b * g_a) / (g_b - g_a)
-        for _ in range(60):  # Newton, kept inside the bracket by bisection
-            h, h1, h2, _h3 = _quintic(road.coefficients, c, u)
-            g = node[c] + u - X + (h - Y) * h1
-            if g < 0.0:
-                a = u
-            else:
-                b = u
-            slope = 1.0 + h1 * h1 + (h - Y) * h2
-            step = -g / slope if slope > 0.0 else np.inf
-            u_next = u + step
-            if not (a <= u_next <= b):
-                u_next = 0.5 * (a + b)
-            moved = abs(u_next - u)
-            u = u_next
-            if moved < 1e-13:
-                break
-        h, h1, h2, _h3 = _quintic(road.coefficients, c, u)
-        s = node[c] + u
-        D = (s - X) ** 2 + (h - Y) ** 2
-        if D < best_D:
-            best_D, best_s, best_h = D, s, h
-    return best_D, best_s, best_h
-
-
-@inlined
-def nearest(road, X, Y):
-    """The profile's point nearest to P = (X, Y): (s, h, n_x, n_y, d).
-
-    A centre too high to touch gets the point below it and d infinite.
-    """
-    shift = 0.0
-    if road.period > 0.0 and X > road.repeat_from + road.reach:
-        shift = np.floor((X - road.repeat_from - road.reach) / road.period) * road.period
-        X = X - shift
-    b = _bin(road, X)
-    if Y > road.ceiling[b]:
-        c = _cell(road, X)
-        h, _h1, _h2, _h3 = _quintic(road.coefficients, c, X - road.node[c])
-        return X + shift, h, 0.0, 1.0, np.inf
-    s, h = X, Y
-    found = False
-    if road.safe[b]:
-        u = (X - road.bin_start) * road.bins_per_metre - b
-        guess = road.guess
-        s_a, s_b, slope_a, slope_b = guess[b, 0], guess[b + 1, 0], guess[b, 1], guess[b + 1, 1]
-        rise = s_b - s_a
-        s = s_a + u * (slope_a + u * (3 * rise - 2 * slope_a - slope_b + u * (slope_a + slope_b - 2 * rise)))
-        Y_0 = guess[b, 2] + u * (guess[b + 1, 2] - guess[b, 2])
-        s += (Y - Y_0) * (guess[b, 3] + u * (guess[b + 1, 3] - guess[b, 3]))
-        c = _cell(road, s)
-        for _ in range(12):
-            if not road.node[c] <= s < road.node[c + 1]:
-                c = _cell(road, s)
-            h, h1, h2, h3 = _quintic(road.coefficients, c, s - road.node[c])
-            e = h - Y
-            g = s - X + e * h1
-            g1 = 1.0 + h1 * h1 + e * h2
-            g2 = 3.0 * h1 * h2 + e * h3
-            step = -2.0 * g * g1 / (2.0 * g1 * g1 - g * g2)  # Halley
-            s += step
-            if abs(step) < road.final_step[b]:
-                h += step * (h1 + step * (0.5 * h2 + step * h3 / 6.0))
-                # Below the road and far aside, D may have other minima
-                found = Y > h and abs(s - X) <= road.radius
-                break
-    if not found and Y >= road.floor[b]:
-        s, h = _search_stretches(road, X, Y, b)
-        found = True
-    if not found:
-        s, h = _search_all_cells(road, X, Y)
-    n_x, n_y = X - s, Y - h
-    d = np.sqrt(n_x * n_x + n_y * n_y)
-    if d < 1e-9:  # the centre lies on the road: its normal is the profile's
-        c = _cell(road, s)
-        _h, h1, _h2, _h3 = _quintic(road.coefficients, c, s - road.node[c])
-        length = np.sqrt(1.0 + h1 * h1)
-        return s + shift, h, -h1 / length, 1.0 / length, d
-    if not found:
-        c = _cell(road, X)
-        h_X, _h1, _h2, _h3 = _quintic(road.coefficients, c, X - road.node[c])
-        if Y < h_X:
-            d = -d
-    return s + shift, h, n_x / d, n_y / d, d
-
-
-@allocating
-def nearest_points(road, centres):
-    """Nearest points (K, 2), normals (K, 2) and distances (K,) for wheel centres (K, 2)."""
-    count = len(centres)
-    points, normals, distances = np.empty((count, 2)), np.empty((count, 2)), np.empty(count)
-    for k in range(count):
-        s, h, n_x, n_y, d = nearest(road, centres[k, 0], centres[k, 1])
-        points[k, 0], points[k, 1] = s, h
-        normals[k, 0], normals[k, 1] = n_x, n_y
-        distances[k] = d
-    return points, normals, distances

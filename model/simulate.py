@@ -11,7 +11,7 @@ import numpy as np
 from model.config import Config
 from model.equilibrium import rest_pose
 from model.integrate import ADVICE, REASON, Integration, Status
-from model.kernel import pack
+from model.lanes import pack
 from model.road import SPARE, build_road
 from model.trajectory import RunStatistics, Trajectory
 from model.vehicle import System, build_system
@@ -28,7 +28,7 @@ def starting_state(system: System) -> tuple[np.ndarray, np.ndarray]:
     v = np.zeros_like(q)
     v[:, 0] = system.v_ref
     v[system.wheel, 2] = -system.v_ref / system.r
-    return pack(q, v, np.zeros(len(system.wheel)), 0.0), static_load
+    return pack(system, q, v, np.zeros(len(system.wheel)), 0.0), static_load
 
 
 @cache

@@ -7,12 +7,14 @@ the steps and never shorten them.
 from __future__ import annotations
 
 from enum import IntEnum
+from math import prod
 from typing import NamedTuple
 
 import numpy as np
 
 from model.compiled import compiled
-from model.kernel import constraint_residual, multipliers, rates
+from model.kernel import constraint_residual, loads, multipliers, rates
+from model.lanes import INT_E, places, state_size
 from model.vehicle import System
 
 STEPS_PER_SECOND = 50_000  # of simulated time, at most; five hundred times what the paper's vehicle needs
@@ -53,11 +55,14 @@ class Samples(NamedTuple):
 
 
 def make_samples(system: System, count: int) -> Samples:
-    """Room for that many samples."""
+    """Room for that many samples, in one piece: a large one is had from the system in large pages, which is quicker."""
     B, W = len(system.mass), len(system.wheel)
     rows = 2 * len(system.joint_i) + int(system.prescribed)
-    per_sample = [(B, 3), (B, 3), (B, 3), (W,), (W,), (W,), (), (rows,), ()]
-    return Samples._make(np.empty((count, *shape)) for shape in per_sample)
+    shapes = [(count, *shape) for shape in [(B, 3), (B, 3), (B, 3), (W,), (W,), (W,), (), (rows,), ()]]
+    ends = np.cumsum([0, *map(prod, shapes)])
+    block = np.empty(ends[-1])
+    parts = (block[first:end].reshape(shape) for first, end, shape in zip(ends, ends[1:], shapes, strict=False))
+    return Samples._make(parts)
 
 
 NOW, STEP, LAST_ERROR, SMALLEST = range(4)  # entries of Clock.time
@@ -77,42 +82,37 @@ def error_scale(system: System, rtol: float, atol: float) -> np.ndarray:
     The sizes are fixed ones for each kind of state, so that the accuracy is the same wherever on the road the vehicle
     is and however far its wheels have turned.
     """
-    B, W = len(system.mass), len(system.wheel)
-    size = np.concatenate(
-        [
-            np.full(3 * B, SIZE_OF_POSITION),
-            np.full(3 * B, SIZE_OF_SPEED),
-            np.full(W + 1, SIZE_OF_DISPLACEMENT),
-        ]
-    )
+    body, wheel = places(system.n, system.m)
+    size = np.ones(state_size(system.n))
+    size[body[:, :3]], size[body[:, 3:]] = SIZE_OF_POSITION, SIZE_OF_SPEED
+    size[wheel] = size[INT_E] = SIZE_OF_DISPLACEMENT
     return atol + rtol * size
 
 
 @compiled
-def record(system, road, t, y, dy, work, samples, k):
+def record(lanes, road, t, y, dy, work, samples, k):
     """Sample k: everything that the state y at time t tells."""
-    B, W = len(system.mass), len(system.wheel)
-    rates(system, road, t, y, dy, work)
-    multipliers(system, dy, work, samples.lam[k])
-    for b in range(B):
+    rates(lanes, road, t, y, dy, work)
+    multipliers(lanes, dy, work, samples.lam[k])
+    for b in range(len(lanes.place)):
         for axis in range(3):
-            samples.q[k, b, axis] = y[axis * B + b]
-            samples.v[k, b, axis] = y[(3 + axis) * B + b]
-            samples.a[k, b, axis] = dy[(3 + axis) * B + b]
-    for w in range(W):
-        samples.f_n[k, w] = work.f_n[w]
-        samples.f_t[k, w] = work.f_t[w]
-        samples.xi[k, w] = y[6 * B + w]
+            position, speed = lanes.place[b, axis], lanes.place[b, axis + 3]
+            samples.q[k, b, axis] = y[position]
+            samples.v[k, b, axis] = y[speed]
+            samples.a[k, b, axis] = dy[speed]
+    loads(lanes, work, samples.f_n[k], samples.f_t[k])
+    for wheel in range(len(lanes.xi_place)):
+        samples.xi[k, wheel] = y[lanes.xi_place[wheel]]
     samples.F[k] = work.F[0]
-    samples.residual[k] = constraint_residual(system, t, y)
+    samples.residual[k] = constraint_residual(lanes, t, y, work)
 
 
 @compiled
-def trouble(y, bodies):
+def trouble(lanes, y):
     """Status.NOT_FINITE or RUNAWAY for a state that no vehicle can be in, else 0."""
     fastest = 0.0
-    for i in range(3 * bodies, 5 * bodies):
-        fastest = max(fastest, abs(y[i]))
+    for b in range(len(lanes.place)):
+        fastest = max(fastest, abs(y[lanes.place[b, 3]]), abs(y[lanes.place[b, 4]]))
     total = 0.0
     for i in range(len(y)):
         total += y[i]
@@ -122,14 +122,14 @@ def trouble(y, bodies):
 
 
 @compiled
-def stiffest_rate(system, road, t, y, work, k, y_near):
+def stiffest_rate(lanes, road, t, y, work, k, y_near):
     """About the largest −λ, 1/s, of the right-hand side linearised at y, by power iteration; k: (3, size) or more.
 
     Contacts and dampers make it stiff, and their eigenvalues are real.
     """
     size = len(y)
     here, near, direction = k[0], k[1], k[2]
-    rates(system, road, t, y, here, work)
+    rates(lanes, road, t, y, here, work)
     for i in range(size):
         direction[i] = 1.0 + 0.1 * np.sin(7.0 * i)  # as good as any that no symmetry keeps from the one sought
     stretch = 0.0
@@ -141,7 +141,7 @@ def stiffest_rate(system, road, t, y, work, k, y_near):
         for i in range(size):
             direction[i] *= shrink
             y_near[i] = y[i] + direction[i]
-        rates(system, road, t, y_near, near, work)
+        rates(lanes, road, t, y_near, near, work)
         along = 0.0
         for i in range(size):
             change = near[i] - here[i]
@@ -233,9 +233,9 @@ STRETCHED = Tableau(
 
 
 @compiled
-def adaptive(tableau, system, road, work, samples, clock, rate, t_end, t_stop, scale, longest, k, y, y_new, sample):
+def adaptive(tableau, lanes, road, work, samples, clock, rate, t_end, t_stop, scale, longest, k, y, y_new, sample):
     """Steps until t ≥ t_stop; k (7, size) holds the stages, k[0] the derivative at y (first same as last)."""
-    size = len(y)
+    size, states = len(y), 6 * len(lanes.place) + len(lanes.xi_place) + 1  # the latter without empty lanes
     time, count = clock.time, clock.tally
     t, h, last_error = time[NOW], time[STEP], time[LAST_ERROR]
     samples_count = len(samples.residual)
@@ -247,7 +247,7 @@ def adaptive(tableau, system, road, work, samples, clock, rate, t_end, t_stop, s
     d1, _, d3, d4, d5, d6, d7 = tableau.dense  # k2 is lent to the samples
     usual, after_rejection = 0.85 / tableau.order, 1.0 / tableau.order
     if count[FRESH] == 0:
-        rates(system, road, t, y, k1, work)
+        rates(lanes, road, t, y, k1, work)
         count[EVALUATIONS] += 1
         count[FRESH] = 1
     rejected = False
@@ -255,19 +255,29 @@ def adaptive(tableau, system, road, work, samples, clock, rate, t_end, t_stop, s
         h = min(h, longest)
         for stage in range(1, tableau.stages):
             w1, w2, w3, w4, w5, w6 = tableau.stage[stage]
-            for i in range(size):
-                y_new[i] = y[i] + h * (w1 * k1[i] + w2 * k2[i] + w3 * k3[i] + w4 * k4[i] + w5 * k5[i] + w6 * k6[i])
-            rates(system, road, t + tableau.time[stage] * h, y_new, k[stage], work)
+            if stage == 1:
+                for i in range(size):
+                    y_new[i] = y[i] + h * (w1 * k1[i])
+            elif stage == 2:
+                for i in range(size):
+                    y_new[i] = y[i] + h * (w1 * k1[i] + w2 * k2[i])
+            elif stage == 3:
+                for i in range(size):
+                    y_new[i] = y[i] + h * (w1 * k1[i] + w2 * k2[i] + w3 * k3[i])
+            else:
+                for i in range(size):
+                    y_new[i] = y[i] + h * (w1 * k1[i] + w2 * k2[i] + w3 * k3[i] + w4 * k4[i] + w5 * k5[i] + w6 * k6[i])
+            rates(lanes, road, t + tableau.time[stage] * h, y_new, k[stage], work)
         count[EVALUATIONS] += last
         error = 0.0
         for i in range(size):
             e = e1 * k1[i] + e2 * k2[i] + e3 * k3[i] + e4 * k4[i] + e5 * k5[i] + e6 * k6[i] + e7 * k7[i]
             square = (e / scale[i]) ** 2
             error += square * square
-        error = h * np.sqrt(np.sqrt(error / size))
+        error = h * np.sqrt(np.sqrt(error / states))
 
         if error <= 1.0:
-            count[STATUS] = trouble(y_new, len(system.mass))
+            count[STATUS] = trouble(lanes, y_new)
             if count[STATUS] != Status.RUNNING.value:
                 break
             t_new = t + h
@@ -287,7 +297,7 @@ def adaptive(tableau, system, road, work, samples, clock, rate, t_end, t_stop, s
                         sample[i] += (
                             final * rest * (d1 * k1[i] + d3 * k3[i] + d4 * k4[i] + d5 * k5[i] + d6 * k6[i] + d7 * k7[i])
                         )
-                record(system, road, count[SAMPLES] / rate, sample, k2, work, samples, count[SAMPLES] - count[TAKEN])
+                record(lanes, road, count[SAMPLES] / rate, sample, k2, work, samples, count[SAMPLES] - count[TAKEN])
                 count[SAMPLES] += 1
             t = t_new
             for i in range(size):
@@ -317,7 +327,7 @@ def adaptive(tableau, system, road, work, samples, clock, rate, t_end, t_stop, s
 
 
 @compiled
-def runge_kutta_4(system, road, work, samples, clock, rate, t_end, t_stop, k, y, y_new, trial):
+def runge_kutta_4(lanes, road, work, samples, clock, rate, t_end, t_stop, k, y, y_new, trial):
     """The classic fixed-step method until t ≥ t_stop; cubic Hermite between steps. k (7, size): k[0] as above."""
     size = len(y)
     time, count = clock.time, clock.tally
@@ -326,26 +336,26 @@ def runge_kutta_4(system, road, work, samples, clock, rate, t_end, t_stop, k, y,
     most_steps = count[STEPS] + STEPS_PER_CHUNK
     k1, k2, k3, k4 = k[0], k[1], k[2], k[3]
     if count[FRESH] == 0:
-        rates(system, road, t, y, k1, work)
+        rates(lanes, road, t, y, k1, work)
         count[EVALUATIONS] += 1
         count[FRESH] = 1
     while t < t_stop and count[STEPS] < most_steps:
         for i in range(size):
             trial[i] = y[i] + h / 2 * k1[i]
-        rates(system, road, t + h / 2, trial, k2, work)
+        rates(lanes, road, t + h / 2, trial, k2, work)
         for i in range(size):
             trial[i] = y[i] + h / 2 * k2[i]
-        rates(system, road, t + h / 2, trial, k3, work)
+        rates(lanes, road, t + h / 2, trial, k3, work)
         for i in range(size):
             trial[i] = y[i] + h * k3[i]
-        rates(system, road, t + h, trial, k4, work)
+        rates(lanes, road, t + h, trial, k4, work)
         for i in range(size):
             y_new[i] = y[i] + h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i])
         count[STEPS] += 1
         t_new = count[STEPS] * h
-        rates(system, road, t_new, y_new, k2, work)
+        rates(lanes, road, t_new, y_new, k2, work)
         count[EVALUATIONS] += 4
-        count[STATUS] = trouble(y_new, len(system.mass))
+        count[STATUS] = trouble(lanes, y_new)
         if count[STATUS] != Status.RUNNING.value:
             break
         while count[SAMPLES] - count[TAKEN] < samples_count and count[SAMPLES] / rate <= t_new:
@@ -357,7 +367,7 @@ def runge_kutta_4(system, road, work, samples, clock, rate, t_end, t_stop, k, y,
                     + theta * rise
                     + theta * (theta - 1) * ((1 - 2 * theta) * rise + h * ((theta - 1) * k1[i] + theta * k2[i]))
                 )
-            record(system, road, count[SAMPLES] / rate, trial, k3, work, samples, count[SAMPLES] - count[TAKEN])
+            record(lanes, road, count[SAMPLES] / rate, trial, k3, work, samples, count[SAMPLES] - count[TAKEN])
             count[SAMPLES] += 1
         t = t_new
         for i in range(size):

@@ -25,6 +25,8 @@ class Elastic(NamedTuple):
 def elastic(system: System, u: np.ndarray) -> Elastic:
     """Springs with their preloads, and stops."""
     k, p = system.k_s, system.p
+    if system.linear:
+        return Elastic(energy=k * u**2 / 2 + system.tau_0 * u, torque=k * u + system.tau_0, stiffness=k)
     over = _into_stops(system, u)
     stop = np.where(over != 0.0, system.k_stop, 0.0)
     return Elastic(

@@ -15,8 +15,8 @@ from model.compiled import compiled
 from model.config import Config
 from model.equations import State, rates
 from model.integrate import error_scale
-from model.kernel import make_work, pack, unpack
 from model.kernel import rates as kernel_rates
+from model.lanes import in_lanes, make_work, pack, places, unpack
 from model.road import build_road
 from model.simulate import starting_state
 from model.vehicle import build_system
@@ -51,14 +51,14 @@ def measure() -> dict[str, tuple[float, str]]:
     config = load_config("paper")
     system, road = build_system(config), build_road(config)
     y, _ = starting_state(system)
-    road_table, bodies = road.table, len(system.mass)
-    y[:bodies] += 20.0  # on the waves
-    y[bodies : 2 * bodies] += float(road.height(np.array(20.0)))
-    work, dy = make_work(system), np.zeros_like(y)
+    body, _ = places(system.n, system.m)
+    y[body[:, 0]] += 20.0  # on the waves
+    y[body[:, 1]] += float(road.height(np.array(20.0)))
+    lanes, work, dy, table = in_lanes(system), make_work(system), np.zeros_like(y), road.table
 
     evaluations = 20_000
-    kernel = _seconds(lambda: _evaluate(system, road_table, y, dy, work, evaluations)) / evaluations
-    q, v, xi, int_e = unpack(y, bodies)
+    kernel = _seconds(lambda: _evaluate(lanes, table, y, dy, work, evaluations)) / evaluations
+    q, v, xi, int_e = unpack(system, y)
     dense = _seconds(lambda: rates(system, road, 0.0, State(q, v, xi, int_e)), repeats=5)
     run = _seconds(lambda: simulate(config))
     duration = config.simulation.duration
@@ -92,19 +92,17 @@ def _ratio(config: Config, changes: dict[str, object]) -> float:
 
 
 @compiled
-def _evaluate(system, road, y, dy, work, count):  # type: ignore[no-untyped-def]
+def _evaluate(lanes, road, y, dy, work, count):  # type: ignore[no-untyped-def]
     for _ in range(count):
-        kernel_rates(system, road, 0.0, y, dy, work)
+        kernel_rates(lanes, road, 0.0, y, dy, work)
         y[0] += 1e-15 * dy[-1]  # so that no evaluation can be left out
 
 
 def _dense_run(system, road, y, settings) -> None:  # type: ignore[no-untyped-def]
-    bodies = len(system.mass)
-
     def right_hand_side(t: float, y: np.ndarray) -> np.ndarray:
-        q, v, xi, int_e = unpack(y, bodies)
+        q, v, xi, int_e = unpack(system, y)
         found = rates(system, road, t, State(q, v, xi, int_e))
-        return pack(v, found.v_dot, found.xi_dot, found.int_e_dot)
+        return pack(system, v, found.v_dot, found.xi_dot, found.int_e_dot)
 
     scale = error_scale(system, settings.rtol, settings.atol)
     solve_ivp(right_hand_side, (0.0, DENSE_TIME), y, method="RK45", rtol=settings.rtol, atol=scale)

@@ -9,6 +9,7 @@ import numpy as np
 from model.config import Config
 from model.equations import State
 from model.equilibrium import rest_pose
+from model.lanes import COORDINATES, places
 from model.vehicle import System
 
 PAPER = Config()
@@ -126,3 +127,8 @@ def turned(u: np.ndarray, angle: float) -> np.ndarray:
 def across(u: np.ndarray) -> np.ndarray:
     """A vector (2,) turned by +90°."""
     return np.array([-u[1], u[0]])
+
+
+def entries(system: System, coordinate: str) -> np.ndarray:
+    """Where the flat state has x, y, theta, v_x, v_y or omega of all bodies: (B,)."""
+    return places(system.n, system.m)[0][:, COORDINATES.index(coordinate)]

@@ -9,11 +9,11 @@ from scipy.integrate import simpson
 from model import equations
 from model.config import Config
 from model.integrate import Integration, Samples, Status
-from model.kernel import pack, unpack
+from model.lanes import pack, unpack
 from model.road import Road, build_road
 from model.simulate import starting_state
 from model.vehicle import System, build_system
-from tests.model.support import FLAT, IMAGINARY, PAPER, ROAD_SPRING, WHEELS, admissible_state
+from tests.model.support import FLAT, IMAGINARY, PAPER, ROAD_SPRING, WHEELS, admissible_state, entries
 
 UNDAMPED = {f"{ROAD_SPRING}.damping": 0.0, f"{IMAGINARY}.damping": 0.0, "contact.normal_damping": 0.0}
 UNDRIVEN = {"drive.force_limit": 0.0}
@@ -32,10 +32,10 @@ def run(system: System, road: Road, y: np.ndarray, duration: float = 1.5) -> Sam
 
 def pushed(system: System) -> np.ndarray:
     """The starting state, and everything moves down at 0.1 m/s."""
-    q, v, xi, int_e = unpack(starting_state(system)[0], len(system.mass))
+    q, v, xi, int_e = unpack(system, starting_state(system)[0])
     v = v.copy()
     v[:, 1] -= 0.1
-    return pack(q, v, xi, int_e)
+    return pack(system, q, v, xi, int_e)
 
 
 def contacts(system: System, road: Road, s: Samples) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -102,8 +102,7 @@ def test_energy_is_conserved_while_wheels_stick():
     system, road = prepared(FLAT.replace(UNDAMPED | UNDRIVEN | {"contact.friction": 2.0}))
     system = system._replace(c_t=1e-3)
     y = pushed(system)
-    B = len(system.mass)
-    y[3 * B : 4 * B] += 0.02  # everything is pushed ahead, against the wheels' spin
+    y[entries(system, "v_x")] += 0.02  # everything is pushed ahead, against the wheels' spin
     s = run(system, road, y)
     assert (np.abs(s.f_t) < system.mu * s.f_n).all()
     assert (system.k_t / 2 * s.xi**2).sum(axis=1).max() > 0.1  # J
@@ -159,7 +158,7 @@ def test_the_same_road_elsewhere_gives_the_same_loads(changes, key, place, shift
     moved_road = build_road(config.replace({key: place + shift}), reach=shift + 100)
     y, _ = starting_state(system)
     moved_y = y.copy()
-    moved_y[: len(system.mass)] += shift
+    moved_y[entries(system, "x")] += shift
     here, there = run(system, road, y), run(system, moved_road, moved_y)
     np.testing.assert_allclose(there.f_n, here.f_n, atol=0.5)
     np.testing.assert_allclose(there.v, here.v, atol=1e-5)
@@ -170,11 +169,10 @@ def test_a_period_further_on_gives_the_same_loads():
     """On the full waves, one wave or a thousand further along."""
     system, road = prepared(PAPER)
     y, _ = starting_state(system)
-    B = len(system.mass)
-    y[:B] += 20.0
-    y[B : 2 * B] += 0.3
+    y[entries(system, "x")] += 20.0
+    y[entries(system, "y")] += 0.3
     near = run(system, road, y)
-    y[:B] += 7000.0
+    y[entries(system, "x")] += 7000.0
     far = run(system, road, y)
     np.testing.assert_allclose(far.f_n, near.f_n, atol=1.0)
 

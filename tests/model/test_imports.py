@@ -16,13 +16,14 @@ SOURCES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob
 # A module imports from rows above its own only. Modules not named stand below all of these.
 ROWS = (
     ("model.compiled", "model.parameters", "model.yaml_text"),
-    ("model.points", "model.road_table"),
-    ("model.validation", "model.profile"),
-    ("model.config",),
+    ("model.points", "model.road_search"),
+    ("model.validation", "model.road_table"),
+    ("model.config", "model.profile"),
     ("model.vehicle", "model.shapes", "model.random_road"),
-    ("model.suspension",),
+    ("model.suspension", "model.lanes"),
     ("model.road", "model.equilibrium", "model.trajectory"),
-    ("model.equations", "model.kernel"),
+    ("model.equations", "model.contact"),
+    ("model.kernel",),
     ("model.steppers",),
     ("model.integrate",),
     ("model.simulate",),
@@ -33,7 +34,7 @@ LEVEL = {module: level for level, row in enumerate(ROWS) for module in row}
 # Libraries with a place of their own: the only modules that may import them.
 PLACES = {
     "numba": {"model.compiled"},
-    "model.compiled": {"model.road_table", "model.kernel", "model.steppers"},
+    "model.compiled": {"model.road_search", "model.road_table", "model.contact", "model.kernel", "model.steppers"},
     "threading": {"app.session", "app.runner", "app.errands"},
     "queue": set(),
     "_thread": set(),

@@ -11,6 +11,7 @@ from numba.core.runtime import _nrt_python, rtsys
 from model import equations, kernel
 from model.equations import Rates, State
 from model.integrate import Integration
+from model.lanes import in_lanes, make_work, pack, unpack
 from model.road import Road, build_road
 from model.simulate import starting_state
 from model.vehicle import System, build_system
@@ -22,19 +23,21 @@ AGREEMENT = 1e-9  # relative to the largest value of its kind
 
 def kernel_rates(system: System, road: Road, t: float, state: State) -> Rates:
     """What the kernel gives, in the form of equations.py. Its scratch space starts full of NaN."""
-    y = kernel.pack(*state)
+    lanes, y = in_lanes(system), pack(system, *state)
     before = y.copy()
     dy = np.full(len(y), np.nan)
-    work = kernel.make_work(system)
+    work = make_work(system)
     for scratch in work:
         scratch.fill(np.nan)
+    f_n, f_t = np.full((2, len(system.wheel)), np.nan)
     lam = np.full(2 * len(system.joint_i) + system.prescribed, np.nan)
-    kernel.rates(system, road.table, t, y, dy, work)
-    kernel.multipliers(system, dy, work, lam)
+    kernel.rates(lanes, road.table, t, y, dy, work)
+    kernel.multipliers(lanes, dy, work, lam)
+    kernel.loads(lanes, work, f_n, f_t)
     np.testing.assert_array_equal(y, before)
-    v, v_dot, xi_dot, int_e_dot = kernel.unpack(dy, len(system.mass))
+    v, v_dot, xi_dot, int_e_dot = unpack(system, dy)
     np.testing.assert_array_equal(v, state.v)
-    return Rates(v_dot, xi_dot, int_e_dot, lam, work.f_n, work.f_t, float(work.F[0]))
+    return Rates(v_dot, xi_dot, int_e_dot, lam, f_n, f_t, float(work.F[0]))
 
 
 def worst_difference(found: Rates, right: Rates) -> dict[str, float]:
@@ -88,20 +91,22 @@ def test_the_random_states_reach_every_regime():
 @pytest.mark.parametrize("option", ["paper", "prescribed", "two wheels"])
 def test_constraint_residual_is_the_largest_entry_of_C(option):
     config = PAPER.replace(OPTIONS[option])
-    system = build_system(config)
+    system, table = build_system(config), build_road(config).table
     rng = np.random.default_rng(0)
     for _ in range(10):
         t, state = random_state(system, rng)
         if system.prescribed:
             state.q[:, 0] += system.v_ref * t  # near enough for the joints to show
         right = np.abs(equations.constraints(system, state.q, t)).max()
-        assert kernel.constraint_residual(system, t, kernel.pack(*state)) == pytest.approx(right, rel=1e-12)
+        lanes, y, work = in_lanes(system), pack(system, *state), make_work(system)
+        kernel.rates(lanes, table, t, y, np.empty_like(y), work)
+        assert kernel.constraint_residual(lanes, t, y, work) == pytest.approx(right, rel=1e-12)
 
 
 def test_pack_and_unpack_are_inverse():
     system = build_system(PAPER)
     _, state = random_state(system, np.random.default_rng(0))
-    unpacked = kernel.unpack(kernel.pack(*state), len(system.mass))
+    unpacked = unpack(system, pack(system, *state))
     for one, other in zip(state, unpacked, strict=True):
         np.testing.assert_array_equal(one, other)
 

@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 
 from model import equations
 from model.integrate import ADAPTIVE, Integration, Status
-from model.kernel import pack
+from model.lanes import pack
 from model.road import build_road
 from model.vehicle import System, build_system
 from tests.model.support import FLAT, WHEELS
@@ -123,7 +123,7 @@ def test_the_pendulum_by_the_kernel(integrator):
     q = np.zeros((5, 3))
     q[:, 1] = 5.0  # m, out of the ground's reach
     q[3:, 0] = -1.0
-    y = pack(q, np.zeros((5, 3)), zero, 0.0)
+    y = pack(system, q, np.zeros((5, 3)), zero, 0.0)
     run = Integration(system, build_road(FLAT).table, y, 10.0, 100.0, integrator, rtol=1e-10, atol=1e-12)
     while run.advance(10.0) is Status.RUNNING:
         pass

@@ -10,6 +10,7 @@ from scipy.signal import welch
 
 from model.random_road import HIGHEST, LOWEST, density, highest
 from model.road import Road, build_road
+from model.road_search import FLOOR
 from tests.model.nearest import assert_nearest, centres_near
 from tests.model.support import PAPER, WHEELS
 
@@ -94,7 +95,7 @@ def test_the_rough_classes_need_the_search():
     assert safe["B"] > 0.9
     assert safe["H"] < 0.2
     table = rough("H").table
-    searched = np.isfinite(table.floor)
+    searched = np.isfinite(table.bin[:, FLOOR])
     assert searched.mean() > 0.5
     cells = (table.stretch[:, 1] - table.stretch[:, 0] + 1).sum() / searched.sum()
     assert cells < 10  # of some twenty under a wheel

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from model.road import Piece, Profile, Road, build_road
-from model.road_table import RoadTable
+from model.road_search import HEIGHT, NODE, RoadTable
 from tests.model.nearest import assert_nearest, brute_force, centres_near, resting_height
 from tests.model.support import FLAT, PAPER
 
@@ -108,9 +108,9 @@ def table_height(table: RoadTable, x: np.ndarray) -> np.ndarray:
     """h from the quintics."""
     if table.period > 0.0:
         x = np.where(x > table.repeat_from, table.repeat_from + np.mod(x - table.repeat_from, table.period), x)
-    c = np.maximum(np.searchsorted(table.node, x, side="right") - 1, 0)
-    u = x - table.node[c]
-    return sum(table.coefficients[c, power] * u**power for power in range(6))
+    c = np.maximum(np.searchsorted(table.cell[:, NODE], x, side="right") - 1, 0)
+    u = x - table.cell[c, NODE]
+    return sum(table.cell[c, HEIGHT + power] * u**power for power in range(6))
 
 
 ROADS = {
