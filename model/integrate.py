@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from model.kernel import rates
-from model.lanes import in_lanes, make_work
+from model.lanes import coordinates, in_lanes, make_work
 from model.road_search import RoadTable
 from model.steppers import (
     DORMAND_PRINCE,
@@ -163,11 +163,16 @@ class Integration:
         from scipy.integrate import solve_ivp  # half a second that no other stepper needs
 
         time, count = self._clock
-        dy = self._stages[0]
+        dy, place, state = self._stages[0], coordinates(self.system), np.zeros_like(self.y)
+
+        def whole(y: np.ndarray) -> np.ndarray:
+            """The flat state with its empty lanes, which the solvers do not see: nothing depends on them."""
+            state[place] = y
+            return state
 
         def right_hand_side(t: float, y: np.ndarray) -> np.ndarray:
-            rates(self.lanes, self.road, t, y, dy, self._work)
-            return dy.copy()
+            rates(self.lanes, self.road, t, whole(y), dy, self._work)
+            return dy[place]
 
         wanted = np.arange(count[SAMPLES], count[TAKEN] + len(self.samples.residual)) / self.rate
         wanted = wanted[wanted <= t_stop + 1e-12]
@@ -175,10 +180,10 @@ class Integration:
             solution = solve_ivp(
                 right_hand_side,
                 (time[NOW], t_stop),
-                self.y,
+                self.y[place],
                 method=SCIPY_METHODS[self.integrator],
                 rtol=max(self.rtol, 3e-14),
-                atol=self._scale,
+                atol=self._scale[place],
                 max_step=self._longest(),
                 dense_output=True,
             )
@@ -191,7 +196,7 @@ class Integration:
                 self.lanes,
                 self.road,
                 t,
-                solution.sol(min(t, reached)),
+                whole(solution.sol(min(t, reached))),
                 dy,
                 self._work,
                 self.samples,
@@ -199,7 +204,7 @@ class Integration:
             )
             count[SAMPLES] += 1
         time[NOW] = reached
-        self.y = solution.y[:, -1].copy()
+        self.y = whole(solution.y[:, -1])
         count[STEPS] += len(solution.t) - 1
         count[EVALUATIONS] += solution.nfev
         if len(solution.t) > 1:
