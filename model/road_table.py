@@ -237,8 +237,12 @@ def _guess_contacts(edges, cells, safe, radius, bin):
             bin[b - 1, GUESS_Y], bin[b - 1, GUESS_Y + 1] = Y_a, Y_b - Y_a
             bin[b - 1, TILT], bin[b - 1, TILT + 1] = tilt_a, tilt_b - tilt_a
             bin[b - 1, GUESS_CELL] = before
-            low, high = max(min(before, under) - 1, 0), min(max(before, under) + 2, count)
-            bin[b - 1, FINAL_STEP] = last_step[low:high].min() if safe[b - 1] else -1.0
+            final = -1.0
+            if safe[b - 1]:
+                final = last_step[under]
+                for c in range(max(min(before, under) - 1, 0), min(max(before, under) + 2, count)):
+                    final = min(final, last_step[c])
+            bin[b - 1, FINAL_STEP] = final
         s_a, slope_a, Y_a, tilt_a = s, slope_b, Y_b, tilt_b
         before = under
 
@@ -250,6 +254,7 @@ def _height(coefficients, c, u):
     return quintic(k[0], k[1], k[2], k[3], k[4], k[5], u)
 
 
+# Element by element: arrays as wholes would cost seconds of compilation, for messages that are never shown
 @allocating
 def _find_stretches(edges, cells, ceiling, floor, radius):
     """For each bin with a floor, the stretches of cells that hold the nearest point for all centres of its box."""
@@ -270,8 +275,8 @@ def _find_stretches(edges, cells, ceiling, floor, radius):
             last += 1
 
         # The nodes that are nearest to the box's corners and to its middle rule out what is further away
-        X[:] = edges[b], edges[b + 1], edges[b], edges[b + 1], (edges[b] + edges[b + 1]) / 2
-        Y[:] = floor[b], floor[b], ceiling[b], ceiling[b], (floor[b] + ceiling[b]) / 2
+        X[0], X[1], X[2], X[3], X[4] = edges[b], edges[b + 1], edges[b], edges[b + 1], (edges[b] + edges[b + 1]) / 2
+        Y[0], Y[1], Y[2], Y[3], Y[4] = floor[b], floor[b], ceiling[b], ceiling[b], (floor[b] + ceiling[b]) / 2
         for i in range(5):
             least = np.inf
             for k in range(first, last + 2):
@@ -300,9 +305,10 @@ def _find_stretches(edges, cells, ceiling, floor, radius):
             else:
                 if found == len(stretch):
                     longer = np.empty((2 * found, 2), dtype=np.int64)
-                    longer[:found] = stretch
+                    for k in range(found):
+                        longer[k, 0], longer[k, 1] = stretch[k, 0], stretch[k, 1]
                     stretch = longer
-                stretch[found] = c
+                stretch[found, 0] = stretch[found, 1] = c
                 found += 1
             end = c
     first_stretch[bins] = found

@@ -16,7 +16,7 @@ from model.road import SPARE, build_road
 from model.trajectory import RunStatistics, Trajectory
 from model.vehicle import System, build_system
 
-CHUNK = 0.5  # s of simulated time between two looks at should_stop: about 1 ms
+CHUNK = 1.0  # s of simulated time between two looks at should_stop: about 1 ms
 
 
 def starting_state(system: System) -> tuple[np.ndarray, np.ndarray]:
