@@ -63,7 +63,7 @@ STATE_SIZE, CONSTANTS_SIZE, SCRATCH_SIZE = (LANES * len(names) for names in (STA
 
 
 class Lanes(NamedTuple):
-    """A System as the kernel computes with it."""
+    """A System as the kernel computes with it; symbols and units are those of System."""
 
     n: int  # chains
     m: int  # of them with imaginary arm and wheel

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from model.config import Config, SineRoad
-from model.road import RAMP_AHEAD
+from model.config import Config, RandomRoad, SineRoad, SumRoad
+from model.road import profile_of
 from model.trajectory import Trajectory
 
 SETTLING = 2.0  # s after the last wheel has come to the full waves, in which the start dies away
@@ -36,16 +36,18 @@ def point_acceleration(trajectory: Trajectory, point: Point = CENTRE_OF_MASS) ->
 def steady_from(trajectory: Trajectory) -> float:
     """When the last road wheel is on the full waves and the start has died away, s; at most half the run.
 
-    0 on a road without waves, where all there is to see is what the start or an obstacle leaves behind.
+    Waves are those of a sine or random road, in a sum too. 0 on a road without them, where all there is to see is what
+    the start or an obstacle leaves behind.
     """
     config, system = trajectory.config, trajectory.system
-    road = config.road
-    if not isinstance(road, SineRoad):
+    wheels, parts = config.vehicle.road_wheels, [config.road]
+    if isinstance(config.road, SumRoad):
+        parts = list(config.road.parts)
+    waves = [part for part in parts if isinstance(part, SineRoad | RandomRoad)]
+    if not waves:
         return 0.0
-    x = config.vehicle.road_wheels.x
-    start = x[0] + RAMP_AHEAD if road.start is None else road.start
-    ramp = road.wavelength if road.ramp is None else road.ramp
-    arrival = (start + ramp - x[-1]) / system.v_ref + SETTLING
+    full = max(profile_of(wave, wheels.x[0], wheels.radius, 0.0).pieces[-1].nodes[0] for wave in waves)
+    arrival = (full - wheels.x[-1]) / system.v_ref + SETTLING
     return float(min(arrival, trajectory.t[-1] / 2))
 
 
