@@ -308,27 +308,28 @@ def multipliers(lanes, dy, work, lam):
     """λ (rows of C) from the accelerations that `rates` left in dy: Newton's law from the leaves inwards."""
     n, m = lanes.n, lanes.m
     sum_x = 0.0
-    for chain in range(n):
-        b, i = chain // LANES, chain % LANES
+    for b in range(len(work.blocks) // SCRATCH_SIZE):
         _, ds, p, w = block(lanes, b, dy, dy, work)
-        l_x, l_y = 0.0, 0.0
-        if chain < m:
-            l_x = p[i + P.m_v] * ds[i + Y.v_x_v] - w[i + W.F_x_v]
-            l_y = p[i + P.m_v] * ds[i + Y.v_y_v] + p[i + P.weight_v] - w[i + W.F_y_v]
-            row = 2 * (2 * n + m + chain)
+        for i in range(min(n - b * LANES, LANES)):
+            chain = b * LANES + i
+            l_x, l_y = 0.0, 0.0
+            if chain < m:
+                l_x = p[i + P.m_v] * ds[i + Y.v_x_v] - w[i + W.F_x_v]
+                l_y = p[i + P.m_v] * ds[i + Y.v_y_v] + p[i + P.weight_v] - w[i + W.F_y_v]
+                row = 2 * (2 * n + m + chain)
+                lam[row], lam[row + 1] = l_x, l_y
+                l_x += p[i + P.m_l] * ds[i + Y.v_x_l]
+                l_y += p[i + P.m_l] * ds[i + Y.v_y_l] + p[i + P.weight_l]
+                row = 2 * (2 * n + chain)
+                lam[row], lam[row + 1] = l_x, l_y
+            l_x += p[i + P.m_w] * ds[i + Y.v_x_w] - w[i + W.F_x_w]
+            l_y += p[i + P.m_w] * ds[i + Y.v_y_w] + p[i + P.weight_w] - w[i + W.F_y_w]
+            row = 2 * (n + chain)
             lam[row], lam[row + 1] = l_x, l_y
-            l_x += p[i + P.m_l] * ds[i + Y.v_x_l]
-            l_y += p[i + P.m_l] * ds[i + Y.v_y_l] + p[i + P.weight_l]
-            row = 2 * (2 * n + chain)
-            lam[row], lam[row + 1] = l_x, l_y
-        l_x += p[i + P.m_w] * ds[i + Y.v_x_w] - w[i + W.F_x_w]
-        l_y += p[i + P.m_w] * ds[i + Y.v_y_w] + p[i + P.weight_w] - w[i + W.F_y_w]
-        row = 2 * (n + chain)
-        lam[row], lam[row + 1] = l_x, l_y
-        l_x += p[i + P.m_a] * ds[i + Y.v_x_a]
-        l_y += p[i + P.m_a] * ds[i + Y.v_y_a] + p[i + P.weight_a]
-        lam[2 * chain], lam[2 * chain + 1] = l_x, l_y
-        sum_x += l_x
+            l_x += p[i + P.m_a] * ds[i + Y.v_x_a]
+            l_y += p[i + P.m_a] * ds[i + Y.v_y_a] + p[i + P.weight_a]
+            lam[2 * chain], lam[2 * chain + 1] = l_x, l_y
+            sum_x += l_x
     if lanes.prescribed:
         lam[-1] = -lanes.m_c * dy[SPEED] - sum_x
         work.F[0] = -lam[-1]
