@@ -11,7 +11,8 @@ from model.compiled import compiled, inlined
 from model.lanes import CONSTANTS_SIZE, HEAD, LANES, SCRATCH_SIZE, STATE_SIZE, C, P, W, Y
 from model.road_search import FAR, approach, halley, nearest, quintic
 
-ROAD, IMAGINARY = (Y.x_w, Y.xi_w, W.X_w, P.k_n_w), (Y.x_v, Y.xi_v, W.X_v, P.k_n_v)  # where a wheel's rows begin
+# Where the rows of a kind of wheel begin: x and what follows it, ξ, its part of scratch space, k_n and c_n
+ROAD, IMAGINARY = (Y.x_w, Y.xi_w, W.X_w, P.k_n_w), (Y.x_v, Y.xi_v, W.X_v, P.k_n_v)
 NEAR = 1e-9  # m: a wheel's centre that is no higher above the road is searched for
 
 
@@ -32,7 +33,7 @@ def _look_up(lanes, road, y, w, p, wheel):
     """What the road is like under one wheel of each chain of a block; `wheel` tells which: ROAD or IMAGINARY."""
     X, _XI, AT, GROUND = wheel
     for i in range(lanes.lanes):
-        there = p[GROUND + i] > 0.0
+        there = p[GROUND + i] > 0.0  # not an empty lane
         (
             w[AT + C.X + i],
             w[AT + C.s + i],
