@@ -20,7 +20,7 @@ from app.keys import Keys, add_keys
 from app.mode_show import PERIOD, ModeShow
 from app.playback import Playback
 from app.playback_panel import PlaybackPanel, Player
-from app.plot_panel import PlotPanel
+from app.plot_panel import LOADS, RUNS, PlotPanel
 from app.road_view import RoadAhead
 from app.runner import Driven, Failed, Finished, Refused
 from app.runs_panel import Keeping, RunsPanel
@@ -77,6 +77,8 @@ class Actions(Wishes, Player, Viewer, Picker, Keeping, Exporter, Analyst, Keys, 
 
     def set_in_view(self, in_view: bool) -> None: ...
 
+    def set_in_front(self, tabs: frozenset[str]) -> None: ...
+
 
 class Window:
     """Panels, plots and 3-D view of one tab."""
@@ -109,14 +111,17 @@ class Window:
             gui.set_panel_label("Trackride")
             gui.main_panel.dock_left()
             gui.main_panel.set_width(LEFT)
-            in_view = add_page(gui)
+            in_view, in_front = add_page(gui, LOADS)
             in_view.on_update(by_user(lambda event: actions.set_in_view(event.target.value), actions.fail))
+            in_front.on_update(
+                by_user(lambda event: actions.set_in_front(frozenset(event.target.value.split(","))), actions.fail)
+            )
             self._controls = ControlPanel(gui, presets, preset, config, actions)
             with self._controls.middle:
                 self._view = ViewPanel(gui, dark, actions)
                 self.exports = ExportsPanel(gui, actions)
             self._plots_panel = gui.add_panel()
-            self._plots = PlotPanel(gui, self._plots_panel, layout.page_height, dark, actions, client.flush)
+            self._plots = PlotPanel(client, self._plots_panel, layout.page_height, dark, actions)
             self.runs = RunsPanel(gui, self._plots.runs_tab, actions)
             self._plots_panel.dock_right()
             self._player = PlaybackPanel(gui, actions)
@@ -298,6 +303,15 @@ class Window:
             self._controls.road_view.content = view
 
     # ── Looks ──
+
+    def set_in_front(self, tabs: frozenset[str]) -> None:
+        """Tell which tabs of the plots are seen."""
+        self._plots.set_in_front(tabs)
+
+    @property
+    def runs_in_front(self) -> bool:
+        """Whether the tab of the runs is seen."""
+        return RUNS in self._plots.in_front
 
     def fit_page(self) -> None:
         """Sizes of the panels, when the page's has changed."""

@@ -33,7 +33,7 @@ LEVEL = {module: level for level, row in enumerate(ROWS) for module in row}
 # Libraries with a place of their own: the only modules that may import them.
 PLACES = {
     "numba": {"model.compiled"},
-    "model.compiled": {"model.road_table", "model.kernel", "model.steppers"},
+    "model.compiled": {"model.road_table", "model.kernel", "model.steppers", "app.thinning"},
     "threading": {"app.session", "app.runner", "app.errands"},
     "queue": set(),
     "_thread": set(),
@@ -46,6 +46,7 @@ NOT_IN_MODEL = {"app", "assets", "viser", "threading", "asyncio", "trimesh", "ma
 PURE = (
     "app.scene",
     "app.plots",
+    "app.thinning",
     "app.playback",
     "app.colours",
     "app.ride_plots",
