@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from operator import attrgetter
 from typing import Any
 
 import viser
@@ -13,6 +14,8 @@ from app.road_controls import PartsControl, ProfileControl
 from model.config import Config
 from model.parameters import GROUPS, NOTES, PARAMETERS, ROAD, Parameter
 
+SECTION_OF = {parameter.key: parameter.key.rpartition(".")[0] for parameter in PARAMETERS}
+SECTIONS = {name: attrgetter(name) for name in SECTION_OF.values() if name}
 KINDS: dict[str, Any] = {"points": ProfileControl, "parts": PartsControl}  # that have controls of their own
 
 
@@ -43,6 +46,7 @@ class ControlPanel:
         )
         acts = {"Undo": wishes.undo, "Redo": wishes.redo, "Reset": wishes.reset}
         steps.on_click(by_user(lambda event: acts[event.target.value](), wishes.fail))
+        self._shown = config
         self.middle = gui.add_folder(None)  # for other controls, between the sliders and the folders
         for group in GROUPS:
             rest = [parameter for parameter in PARAMETERS if parameter.group == group and not parameter.what_if]
@@ -75,9 +79,19 @@ class ControlPanel:
         return self._controls[key]
 
     def show(self, config: Config, touched: Collection[str] = ()) -> None:
-        """Say what the configuration says, but leave controls alone that the user has touched and may still move."""
+        """Say what the configuration says, but leave controls alone that the user has touched and may still move.
+
+        While the user moves some, only sections of the configuration are looked at in which something has changed: no
+        other control can say anything else.
+        """
+        before, self._shown = self._shown, config
+        others = {name for name, section in SECTIONS.items() if section(before) == section(config)} if touched else ()
         with_track = config.vehicle.imaginary_wheels.enabled
+        if before.vehicle.imaginary_wheels.enabled != with_track:
+            others = ()
         for key, control in self._controls.items():
+            if SECTION_OF[key] in others:
+                continue
             applies = control.parameter.applies_to(config.road.type)
             control.describe(config.parameter(key))
             if applies:

@@ -54,6 +54,7 @@ class Marks:
         ring = lathe([(layout.radius, 0.008 * s), (layout.radius, -0.008 * s), (RING * layout.radius, -0.008 * s)],
                      (0, 0, 0, 255))  # fmt: skip
         places = ring_places(scene, now)
+        self._ringed = True  # some wheel has a ring
         self._rings = api.add_batched_meshes_simple(
             "/marks/rings",
             ring.vertices,
@@ -113,7 +114,9 @@ class Marks:
             update(self._static, points=static_marks(scene, now))
         if shown["travel"]:
             update(self._travel, points=travel_bars(scene, now))
-        if self._rings.visible:
+        ringed = shown["load_colours"] or (shown["in_air"] and bool((now.contacts.load <= 0.0).any()))
+        if self._rings.visible and (ringed or self._ringed):
+            self._ringed = ringed
             places = ring_places(scene, now)
             colours, sizes = ring_looks(scene, now, shown["in_air"], shown["load_colours"])
             update(
@@ -169,8 +172,10 @@ def ring_looks(scene: Scene, now: Snapshot, in_air: bool, coloured: bool) -> tup
     """Colours (2 W, 3), 0…255 of light, and sizes (2 W,) of the rings; size 0 where there is nothing to say."""
     load = now.contacts.load
     flying = load <= 0.0
-    colours = load_colours(load / scene.load_top)[:, :3]
-    colours[flying & in_air] = IN_AIR
+    colours = np.full((len(load), 3), IN_AIR)
+    if coloured:
+        told = ~(flying & in_air)
+        colours[told] = load_colours(load[told] / scene.load_top)[:, :3]
     sizes = ((flying & in_air) | (~flying & coloured)).astype(np.float32)
     amounts = np.round(255 * light(colours)).astype(np.uint8)
     return np.tile(amounts, (len(SIDES), 1)), np.tile(sizes, len(SIDES))
