@@ -27,6 +27,11 @@ def thin(x: np.ndarray, values: np.ndarray, buckets: int = BUCKETS) -> tuple[np.
     return x[ends], pairs.T
 
 
+def warm_up() -> None:
+    """Compile the thinning, or load it compiled."""
+    _pair(np.zeros((1, 1)), 1, np.empty((1, 2)))
+
+
 @compiled
 def _pair(values: np.ndarray, size: int, pairs: np.ndarray) -> None:
     """Fill pairs (C, K) with the two values of each bucket of `size` rows of values (N, C); the last may be shorter."""
