@@ -63,15 +63,15 @@ def apply_theme(gui: viser.GuiApi, dark: bool) -> None:
     gui.configure_theme(dark_mode=dark, brand_color=BRAND, show_logo=False, show_share_button=False)
 
 
-def add_page(gui: viser.GuiApi, tab: str) -> tuple[viser.GuiCheckboxHandle, viser.GuiTextHandle]:
+def add_page(gui: viser.GuiApi) -> tuple[viser.GuiCheckboxHandle, viser.GuiTextHandle]:
     """Add rules and keys, and two controls that nobody sees but the page sets.
 
-    The checkbox is ticked while the page is in view. The text names the tabs in front, with commas between: `tab` at
-    first; assets/plots.js writes it.
+    The checkbox is ticked while the page is in view. The text names the tabs in front, with commas between;
+    assets/plots.js writes it as soon as the page shows the panels.
     """
     page = gui.add_html("")
     in_view = gui.add_checkbox("In view", True)
-    in_front = gui.add_text("Tabs in front", tab)
+    in_front = gui.add_text("Tabs in front", "")
     page.content = PAGE.replace("IN_VIEW", in_view._impl.uuid)
     return in_view, in_front
 

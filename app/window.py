@@ -20,7 +20,7 @@ from app.keys import Keys, add_keys
 from app.mode_show import PERIOD, ModeShow
 from app.playback import Playback
 from app.playback_panel import PlaybackPanel, Player
-from app.plot_panel import LOADS, RUNS, PlotPanel
+from app.plot_panel import RUNS, PlotPanel
 from app.road_view import RoadAhead
 from app.runner import Driven, Failed, Finished, Refused
 from app.runs_panel import Keeping, RunsPanel
@@ -39,6 +39,8 @@ SLOW_START = 1.5  # s without progress: the model is being compiled
 FIRST_START = "compiling the model, for half a minute…"
 ROAD_EVERY = 0.35  # s between two side views of the road
 NOTICE_TIME = 10.0  # s that a notification stays
+FOLDERS = "View", "Export", "Import and presets"
+LAID_OUT_WITHIN = 3.0  # s in which a page says that its panels stand, or else is taken to have them
 
 
 class Scene(Protocol):
@@ -93,11 +95,14 @@ class Window:
         make_scene: Callable[[viser.ClientHandle, bool], Scene],
         dark: bool,
     ) -> None:
-        self._client, self._dark = client, dark
+        self._client, self._dark, self._actions = client, dark, actions
         self._run: Trajectory | None = None
         self._baseline: Trajectory | None = None
         self._drive: DriveState | None = None  # the last of the drive that is shown
         self._drawn: tuple[int, float] | None = None  # run and time that the 3-D view shows
+        self._to_scene: Trajectory | None = None  # a run that the 3-D view has not got yet
+        self._stands_at = monotonic() + LAID_OUT_WITHIN  # when the page has its panels, s
+        self._filled = False  # the page has what is not seen at first
         self._mode: ModeShow | None = None  # in the run's place
         self._run_number = 0
         self._road_due = 0.0  # monotonic s
@@ -111,15 +116,14 @@ class Window:
             gui.set_panel_label("Trackride")
             gui.main_panel.dock_left()
             gui.main_panel.set_width(LEFT)
-            in_view, in_front = add_page(gui, LOADS)
+            in_view, in_front = add_page(gui)
             in_view.on_update(by_user(lambda event: actions.set_in_view(event.target.value), actions.fail))
             in_front.on_update(
                 by_user(lambda event: actions.set_in_front(frozenset(event.target.value.split(","))), actions.fail)
             )
             self._controls = ControlPanel(gui, presets, preset, config, actions)
             with self._controls.middle:
-                self._view = ViewPanel(gui, dark, actions)
-                self.exports = ExportsPanel(gui, actions)
+                self._folders = [gui.add_folder(name, expand_by_default=False) for name in FOLDERS]
             self._plots_panel = gui.add_panel()
             self._plots = PlotPanel(client, self._plots_panel, layout.page_height, dark, actions)
             self.runs = RunsPanel(gui, self._plots.runs_tab, actions)
@@ -127,10 +131,20 @@ class Window:
             self._player = PlaybackPanel(gui, actions)
             self._card = WheelCard(gui, actions)
             self._resize(layout)
-            add_keys(gui, actions)
-            add_hints(gui)
         self.scene = make_scene(client, dark)
         self.scene.on_pick(actions.pick_wheel)
+
+    def _fill(self) -> None:
+        """Add what is not seen at first: half of the page's work, and the rest is there sooner without it."""
+        gui, actions = self._client.gui, self._actions
+        view, out, into = self._folders
+        with self._client.atomic():
+            self._controls.fill()
+            self._view = ViewPanel(gui, view, self._dark, actions)
+            self.exports = ExportsPanel(gui, out, into, actions)
+            add_keys(gui, actions)
+            add_hints(gui)
+        self._filled = True
 
     # ── Runs ──
 
@@ -140,8 +154,7 @@ class Window:
         run = done.trajectory
         self._run, self._run_number, self._drive = run, done.wish.number, None
         self._plot(time)
-        self.scene.show(run)
-        self._drawn = None
+        self._to_scene, self._drawn = run, None
         if settled:
             self._controls.show(run.config, touched=done.wish.touched)
         if run.complete:
@@ -162,6 +175,7 @@ class Window:
         if before is None or before.past is not state.past:
             self._run = state.past
             self._plot(time)
+        self._to_scene = None
         self.scene.show_live(state.recent, state.road)
         self.scene.draw(time)
         self._drawn = (self._run_number, time)
@@ -255,8 +269,16 @@ class Window:
     def draw(self, time: float, elapsed: float = 0.0) -> None:
         """The 3-D view at a time of the run, s, `elapsed` s of real time after it was drawn last.
 
-        Of a drive that goes on, each instant is drawn as it comes.
+        Of a drive that goes on, each instant is drawn as it comes. A page that is still laying out its panels is not
+        given anything more yet.
         """
+        if monotonic() < self._stands_at:
+            return
+        if not self._filled:
+            self._fill()
+        if self._to_scene is not None:
+            self.scene.show(self._to_scene)
+            self._to_scene = None
         if self._mode is not None:
             if self._mode.since is None:
                 self._mode.since = time
@@ -282,7 +304,8 @@ class Window:
         self.scene.write_loads()
         self._show_wheel()
         self._show_road(playback.time)
-        self._view.show_load_scale(self.scene.load_top)
+        if self._filled:
+            self._view.show_load_scale(self.scene.load_top)
 
     def _show_road(self, time: float) -> None:
         """The side view of the road about the vehicle at a time of the run or drive, s.
@@ -305,7 +328,8 @@ class Window:
     # ── Looks ──
 
     def set_in_front(self, tabs: frozenset[str]) -> None:
-        """Tell which tabs of the plots are seen."""
+        """Tell which tabs of the plots are seen, and so that the page stands."""
+        self._stands_at = 0.0
         self._plots.set_in_front(tabs)
 
     @property

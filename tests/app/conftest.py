@@ -246,6 +246,8 @@ class Tab:
             self.widgets.pop(message["uuid"], None)
         elif kind.startswith("Gui") and "props" in message:
             self.widgets[message["uuid"]] = message
+            if message["props"].get("label") == "Tabs in front":
+                self.send("GuiUpdateMessage", uuid=message["uuid"], updates={"value": "Loads"})
         elif kind == "LocalStorageSetItemMessage":
             self.storage[message["key"]] = message["value"]
         elif kind == "LocalStorageGetItemRequestMessage" and not self._mute:
