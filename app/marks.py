@@ -33,6 +33,14 @@ DEFAULTS = {
 }  # part -> whether it is shown at first
 
 
+def _amounts(colours: np.ndarray) -> np.ndarray:
+    """sRGB 0…255 as amounts of light 0…255."""
+    return np.round(255 * light(colours)).astype(np.uint8)
+
+
+_IN_AIR_AMOUNTS = _amounts(np.array(IN_AIR))
+
+
 class Marks:
     """The marks of one vehicle in a viser scene."""
 
@@ -172,12 +180,11 @@ def ring_looks(scene: Scene, now: Snapshot, in_air: bool, coloured: bool) -> tup
     """Colours (2 W, 3), 0…255 of light, and sizes (2 W,) of the rings; size 0 where there is nothing to say."""
     load = now.contacts.load
     flying = load <= 0.0
-    colours = np.full((len(load), 3), IN_AIR)
+    amounts = np.full((len(load), 3), _IN_AIR_AMOUNTS)
     if coloured:
         told = ~(flying & in_air)
-        colours[told] = load_colours(load[told] / scene.load_top)[:, :3]
+        amounts[told] = _amounts(load_colours(load[told] / scene.load_top)[:, :3])
     sizes = ((flying & in_air) | (~flying & coloured)).astype(np.float32)
-    amounts = np.round(255 * light(colours)).astype(np.uint8)
     return np.tile(amounts, (len(SIDES), 1)), np.tile(sizes, len(SIDES))
 
 

@@ -101,10 +101,11 @@ def _session_class() -> type[Session]:
 def prepare() -> None:
     """Load what sessions need; the very first time, compile it."""
     _session_class()
-    from app.thinning import warm_up as warm_up_thinning
+    from app import thinning, track
     from model.simulate import warm_up
 
-    warm_up_thinning()
+    thinning.warm_up()
+    track.warm_up()
     warm_up()
 
 

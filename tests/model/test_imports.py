@@ -33,7 +33,7 @@ LEVEL = {module: level for level, row in enumerate(ROWS) for module in row}
 # Libraries with a place of their own: the only modules that may import them.
 PLACES = {
     "numba": {"model.compiled"},
-    "model.compiled": {"model.road_table", "model.kernel", "model.steppers", "app.thinning"},
+    "model.compiled": {"model.road_table", "model.kernel", "model.steppers", "app.thinning", "app.track"},
     "threading": {"app.session", "app.runner", "app.errands"},
     "queue": set(),
     "_thread": set(),
@@ -47,6 +47,7 @@ PURE = (
     "app.scene",
     "app.plots",
     "app.thinning",
+    "app.track",
     "app.playback",
     "app.colours",
     "app.ride_plots",
