@@ -92,16 +92,16 @@ def measure() -> dict[str, tuple[float, str]]:
         tab.close()
         server.stop()
     return {
-        "curves of a run": (median(curves), "ms"),
-        "curves of a run, 95 %": (quantiles(curves, n=20)[-1], "ms"),
-        "frame of the 3-D view": (median(frames), "ms"),
-        "frame of the 3-D view, 95 %": (quantiles(frames, n=20)[-1], "ms"),
-        "all that is shown during a drag, for each run": (sum(everything) / len(curves), "ms"),
-        "what follows once the drag is over": (sum(behind), "ms"),
-        "what follows once the drag is over, at a stretch": (max(behind), "ms"),
+        "Python for the curves of a run": (median(curves), "ms"),
+        "Python for the curves of a run, 95 %": (quantiles(curves, n=20)[-1], "ms"),
+        "Python for a frame of the 3-D view": (median(frames), "ms"),
+        "Python for a frame of the 3-D view, 95 %": (quantiles(frames, n=20)[-1], "ms"),
+        "Python for all that is shown during a drag, each run": (sum(everything) / len(curves), "ms"),
+        "Python for what follows once a drag is over": (sum(behind), "ms"),
+        "Python for what follows once a drag is over, at a stretch": (max(behind), "ms"),
     }
 
 
 if __name__ == "__main__":
     for what, (value, unit) in measure().items():
-        print(f"{what:50} {value:8.2f} {unit}")
+        print(f"{what:60} {value:8.2f} {unit}")
