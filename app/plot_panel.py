@@ -149,6 +149,7 @@ class PlotPanel:
         """Make the charts fill a page of this height, px."""
         self._page_height = page_height
         self._redraw()
+        self.redraw_spectrum()
 
     def redraw_spectrum(self) -> None:
         """Show another spectrum, or the same in another way, soon."""
@@ -158,6 +159,7 @@ class PlotPanel:
         """Change all colours."""
         self._dark = dark
         self._redraw()
+        self.redraw_spectrum()
 
     def _behind(self) -> list[Part]:
         """Parts that do not show what is to be shown."""
@@ -174,12 +176,11 @@ class PlotPanel:
                 self._update(part)
 
     def _redraw(self) -> None:
-        """Show the same in another way: soon, where it costs more."""
+        """Show the same curves in another way, and leave what costs more as it is."""
         slow = [part for part in self._parts if not part.quick and part.version == self._version]
         self._follow()
         for part in slow:
             part.version = self._version
-        self.redraw_spectrum()
 
     def _update(self, part: Part) -> None:
         assert self._run is not None
