@@ -102,11 +102,13 @@ def prepare() -> None:
     """Load what sessions need; the very first time, compile it."""
     _session_class()
     from app import thinning, track
+    from assets import solids
     from model.simulate import warm_up
 
     thinning.warm_up()
     track.warm_up()
     warm_up()
+    solids.warm_up()
 
 
 def serve(config: Config, preset: str, host: str = HOST, port: int = PORT, open_browser: bool = True) -> None:

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from itertools import combinations, pairwise
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from assets.gltf import glb_of
-
-FLAT = 1e-7  # m: what is nearer to a plane lies on it
 Rgb = tuple[int, int, int]  # sRGB, 0…255
 Rgba = tuple[int, int, int, int]  # sRGB and opacity, 0…255
 
@@ -106,6 +103,9 @@ def glb(parts: Iterable[Part], *, glow: float = 0.0) -> bytes:
 
     glow: 0 for parts that stand in the scene's light; else they shine by themselves, so many times their colours.
     """
+    import trimesh
+    from trimesh.exchange.gltf import export_glb
+
     vertices, faces, amounts = _merged(parts)
     brightness = 1.0
     material: dict[str, Any] = {}
@@ -122,7 +122,23 @@ def glb(parts: Iterable[Part], *, glow: float = 0.0) -> bytes:
         "roughnessFactor": 0.75,
     }
     colours = np.round(255 * amounts).astype(np.uint8)
-    return glb_of(vertices, faces, colours, material)
+    mesh = trimesh.Trimesh(vertices, faces, vertex_colors=colours, process=False)
+
+    def dress(tree: dict[str, Any]) -> None:
+        tree["materials"] = [material]
+        tree["extensionsUsed"] = list(material.get("extensions", {}))
+        for shape in tree["meshes"]:
+            for primitive in shape["primitives"]:
+                primitive["material"] = 0
+
+    data = export_glb(trimesh.Scene(mesh), include_normals=False, tree_postprocessor=dress)
+    assert isinstance(data, bytes)
+    return data
+
+
+def warm_up() -> None:
+    """Load the libraries that meshes are made with: half a second, for which no page is to wait."""
+    glb([convex([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], (0, 0, 0, 255))])
 
 
 def light(colours: np.ndarray) -> np.ndarray:
@@ -144,23 +160,14 @@ def _merged(parts: Iterable[Part]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _outlines(points: np.ndarray) -> list[np.ndarray]:
-    """Corners (K, 3) of every flat face of the points' convex hull, counter-clockwise seen from outside.
+    """Corners (K, 3) of every flat face of the points' convex hull, counter-clockwise seen from outside."""
+    from scipy.spatial import ConvexHull
 
-    A face is a plane through three points that has no point outside. For few points that is soon tried out.
-    """
-    first, second, third = points[np.array(list(combinations(range(len(points)), 3))).T]
-    normals = np.cross(second - first, third - first)
-    areas = np.linalg.norm(normals, axis=1)
-    spans = areas > FLAT * np.ptp(points)
-    normals = normals[spans] / areas[spans, None]
-    heights = normals @ points.T - np.sum(normals * first[spans], axis=1)[:, None]  # (planes, points)
-    faces: dict[bytes, np.ndarray] = {}
-    for sign in (1.0, -1.0):
-        for face in np.flatnonzero((sign * heights).max(axis=1) < FLAT):
-            faces.setdefault((np.abs(heights[face]) < FLAT).tobytes(), sign * normals[face])
+    solid = ConvexHull(points)
+    normals, face_of = np.unique(solid.equations.round(6), axis=0, return_inverse=True)
     outlines = []
-    for on_face, normal in faces.items():
-        corners = points[np.frombuffer(on_face, bool)]
+    for face, normal in enumerate(normals[:, :3]):
+        corners = points[np.unique(solid.simplices[face_of.ravel() == face])]
         centred = corners - corners.mean(axis=0)
         across = centred[0] / np.linalg.norm(centred[0])
         angle = np.arctan2(centred @ np.cross(normal, across), centred @ across)
