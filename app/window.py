@@ -202,7 +202,7 @@ class Window:
             self._end_mode()
             return
         x = float(np.interp(self._plots.time, run.t, run.q[:, run.system.chassis, 0]))
-        self._mode = ModeShow(run.config, mode, x)
+        self._mode, self._to_scene = ModeShow(run.config, mode, x), None
         self.scene.show(self._mode.swing)
         self.scene.show_ghost(self._mode.rest)
 
