@@ -59,6 +59,7 @@ PURE = (
     "app.load_colours",
     "app.trust",
     "app.markup",
+    "app.status",
     "app.driving",
 )  # no viser, so that they are tested without a browser
 
