@@ -12,7 +12,7 @@ setup: .venv/ready
 	$(PYTHON) -m venv .venv || { $(AS_ROOT) apt-get update && $(AS_ROOT) apt-get install -y python3-venv && $(PYTHON) -m venv --clear .venv; }
 	$(BIN)/python -m pip install --quiet --requirement requirements.txt
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
-	$(BIN)/python -c "from model.simulate import warm_up; warm_up()"
+	$(BIN)/python -c "from app.server import prepare; prepare()"
 	touch $@
 
 run: setup

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import viser
+from viser import _messages as messages
 
 from app.plots import TIME, Curve, Plot
 from app.screen import AXIS_NAME
@@ -40,15 +42,17 @@ class Charts:
             self._height = height
             self._make()
             return
+        resized, self._height = height != self._height, height
         self._nudge = NUDGE - self._nudge
         for chart, plot in zip(self._charts, plots, strict=True):
             if restyled:
                 chart.series = _series(plot)
-            chart.height = height + (AXIS_NAME if plot is plots[-1] else 0)
+            if resized:
+                chart.height = height + (AXIS_NAME if plot is plots[-1] else 0)
             x, *values = plot.data
             x = x.copy()
             x[-1] += self._nudge
-            chart.data = (x, *values)
+            _send(chart, (x, *values))
 
     def _make(self) -> None:
         for chart in self._charts:
@@ -82,6 +86,12 @@ class Charts:
             height=self._height + (AXIS_NAME if with_axis else 0),
             padding=PADDING,
         )
+
+
+def _send(chart: viser.GuiUplotHandle, data: tuple[np.ndarray, ...]) -> None:
+    """Give a chart new data as they are: viser's own assignment checks and copies each curve, for 0.7 ms a chart."""
+    update = messages.GuiUpdateMessage(chart._impl.uuid, {"data": data})
+    chart._impl.gui_api._websock_interface.queue_message(update)
 
 
 def _series(plot: Plot) -> tuple[viser.uplot.Series, ...]:

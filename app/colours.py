@@ -8,6 +8,7 @@ changes with the hue, so that neighbours stay apart for colour-blind eyes and in
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -101,6 +102,7 @@ DARK = Theme(
 )
 
 
+@cache
 def wheel_palette(road_count: int, imaginary_count: int, dark: bool = False) -> Palette:
     """The palette of a vehicle with so many wheels, for a light or a dark background."""
     return Palette(

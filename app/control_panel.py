@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from operator import attrgetter
 from typing import Any
 
 import viser
@@ -13,16 +14,20 @@ from app.road_controls import PartsControl, ProfileControl
 from model.config import Config
 from model.parameters import GROUPS, NOTES, PARAMETERS, ROAD, Parameter
 
+SECTION_OF = {parameter.key: parameter.key.rpartition(".")[0] for parameter in PARAMETERS}
+SECTIONS = {name: attrgetter(name) for name in SECTION_OF.values() if name}
+BOXED = tuple(p for p in PARAMETERS if not p.what_if and p.group != NOTES and p.kind != "text")  # in folders
 KINDS: dict[str, Any] = {"points": ProfileControl, "parts": PartsControl}  # that have controls of their own
 
 
 class ControlPanel:
-    """All controls of one browser tab, in the present container of `gui`."""
+    """All controls of one browser tab, in the present container of `gui`; those in folders once `fill` is called."""
 
     def __init__(
         self, gui: viser.GuiApi, presets: Mapping[str, Config], preset: str, config: Config, wishes: Wishes
     ) -> None:
         """presets: name -> configuration; `preset` is shown as the chosen one, `config` in the controls."""
+        self._gui, self._wishes = gui, wishes
         self._titles = _unique_titles(presets)
         self._preset: Any = gui.add_dropdown(
             "Preset",
@@ -43,19 +48,21 @@ class ControlPanel:
         )
         acts = {"Undo": wishes.undo, "Redo": wishes.redo, "Reset": wishes.reset}
         steps.on_click(by_user(lambda event: acts[event.target.value](), wishes.fail))
+        self._shown = config
         self.middle = gui.add_folder(None)  # for other controls, between the sliders and the folders
-        for group in GROUPS:
-            rest = [parameter for parameter in PARAMETERS if parameter.group == group and not parameter.what_if]
-            if group == NOTES or not rest:
-                continue
-            with gui.add_folder(group, expand_by_default=False):
-                if group == ROAD:
-                    self.road_view = gui.add_html("")  # for others to fill
-                for parameter in rest:
-                    if parameter.kind != "text":
-                        control = KINDS.get(parameter.kind, Control)
-                        self._controls[parameter.key] = control(gui, parameter, _value(config, parameter), wishes)
+        groups = {parameter.group for parameter in BOXED}
+        self._folders = {group: gui.add_folder(group, expand_by_default=False) for group in GROUPS if group in groups}
+        with self._folders[ROAD]:
+            self.road_view = gui.add_html("")  # for others to fill
         self.show(config)
+
+    def fill(self) -> None:
+        """Fill the folders, which are closed at first."""
+        for parameter in BOXED:
+            control, value = KINDS.get(parameter.kind, Control), _value(self._shown, parameter)
+            with self._folders[parameter.group]:
+                self._controls[parameter.key] = control(self._gui, parameter, value, self._wishes)
+        self.show(self._shown)
 
     def offer(self, presets: Mapping[str, Config], chosen: str) -> None:
         """Offer these presets, `chosen` as the one that is used."""
@@ -75,9 +82,19 @@ class ControlPanel:
         return self._controls[key]
 
     def show(self, config: Config, touched: Collection[str] = ()) -> None:
-        """Say what the configuration says, but leave controls alone that the user has touched and may still move."""
+        """Say what the configuration says, but leave controls alone that the user has touched and may still move.
+
+        While the user moves some, only sections of the configuration are looked at in which something has changed: no
+        other control can say anything else.
+        """
+        before, self._shown = self._shown, config
+        others = {name for name, section in SECTIONS.items() if section(before) == section(config)} if touched else ()
         with_track = config.vehicle.imaginary_wheels.enabled
+        if before.vehicle.imaginary_wheels.enabled != with_track:
+            others = ()
         for key, control in self._controls.items():
+            if SECTION_OF[key] in others:
+                continue
             applies = control.parameter.applies_to(config.road.type)
             control.describe(config.parameter(key))
             if applies:

@@ -16,7 +16,8 @@ from app.window import Window
 from model.config import Config, ConfigError
 from model.trajectory import Trajectory
 
-COMPARE_EVERY = 0.3  # s from one table of figures to the next while runs follow each other
+COMPARE_EVERY = 0.3  # s from one table of figures to the next while runs follow each other and the table is seen…
+CALM = 0.3  # s … or without another run when it is not
 
 
 class Wishing(Protocol):
@@ -53,7 +54,7 @@ class Desk:
         self._rested = False  # the user has rested on it
         self._kept: Kept | None = None  # the same, once it is kept
         self._baseline: Kept | None = None
-        self._compared = True  # the table of figures is that of the run that is shown
+        self._compared = self._named = True  # the table of figures, and the name, are those of the run that is shown
         self._compared_at = 0.0  # when it was made, s
         self._news_at: float | None = None  # when something came up that the browser is to store, s; None: nothing
         self._stored = ""
@@ -78,10 +79,8 @@ class Desk:
         self._complete(done.trajectory)
         self._kept = self._runs.find(done.trajectory.config)
         self._compared = False
+        self._named &= not fresh
         self._came_true(done.wish, now)
-        if fresh:
-            self._show()
-            self._window.runs.show_name(self._name)
 
     def driven(self, wish: Wish, now: float) -> None:
         """A drive is shown, at `now`, s."""
@@ -93,9 +92,11 @@ class Desk:
         if self._baseline is not None and self._baseline.run is None:
             self._helper.run_again(self._baseline.config)
         if self._good is not None and len(self._good.trajectory.t):
-            if not self._compared and now - self._compared_at >= COMPARE_EVERY:
-                self._compare(now)
-            if not self._rested and now - self._good_at >= REST and self._settled(self._good.wish):
+            seen = self._window.runs_in_front and now - self._compared_at >= COMPARE_EVERY
+            rests = not self._rested and now - self._good_at >= REST and self._settled(self._good.wish)
+            if seen or rests or now - self._good_at >= CALM:
+                self._tell(now)
+            if rests:
                 self._rested = True
                 self._keep(self._good)
         if self._restored and self._news_at is not None and now - self._news_at >= REST:
@@ -215,15 +216,21 @@ class Desk:
         """Of the run that is shown."""
         if self._kept is not None:
             return self._kept.name
-        return "" if self._good is None else run_name(self._good.wish)
+        return "" if self._good is None else run_name(self._good.wish.base, self._good.trajectory.config)
 
     def _show(self) -> None:
         self._window.runs.show(self._runs, self._name, self._kept, self._baseline)
 
-    def _compare(self, now: float) -> None:
+    def _tell(self, now: float) -> None:
+        """Say of the run that is shown what has not been said yet."""
         assert self._good is not None
-        self._window.runs.compare(self._good.trajectory, self.baseline)
-        self._compared, self._compared_at = True, now
+        if not self._named:
+            self._named = True
+            self._show()
+            self._window.runs.show_name(self._name)
+        if not self._compared:
+            self._window.runs.compare(self._good.trajectory, self.baseline)
+            self._compared, self._compared_at = True, now
 
     # ── Configurations ──
 

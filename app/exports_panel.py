@@ -43,12 +43,14 @@ class Exporter(Protocol):
 
 
 class ExportsPanel:
-    """Two folders in the present container of `gui`."""
+    """Fills two folders of `gui`."""
 
-    def __init__(self, gui: viser.GuiApi, exporter: Exporter) -> None:
+    def __init__(
+        self, gui: viser.GuiApi, out: viser.GuiFolderHandle, into: viser.GuiFolderHandle, exporter: Exporter
+    ) -> None:
         self._gui, self._exporter = gui, exporter
         fail = exporter.fail
-        with gui.add_folder("Export", expand_by_default=False):
+        with out:
             self._size = gui.add_dropdown("Picture size", tuple(SIZES), hint="Of screenshots: pixels, width × height")
             self._transparent = gui.add_checkbox(
                 "Transparent", False, hint="Screenshots show vehicle and road without sky and ground"
@@ -73,7 +75,7 @@ class ExportsPanel:
                 f"{MOVIE_LENGTH * MOVIE_RATE:.0f} frames anew and must stay in front: without a graphics card that can "
                 "take three minutes. Cancel: stop making either.",
             )
-        with gui.add_folder("Import and presets", expand_by_default=False):
+        with into:
             self._name = gui.add_text("Preset name", "", hint="A name for the present parameters")
             present = gui.add_button_group(
                 "As they are",

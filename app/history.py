@@ -117,14 +117,14 @@ class Runs:
 
     def complete(self, run: Trajectory) -> None:
         """Give a run, made again, to what is kept of it."""
-        found = self.find(run.config)
-        if found is not None and found.run is None:
+        found = next((kept for kept in self if kept.run is None and kept.config == run.config), None)
+        if found is not None:
             self._kept[found.number] = replace(found, run=run)
             self._make_room(self._kept[found.number])
 
     def _add(self, wish: Wish, config: Config, run: Trajectory | None, name: str, colour: str) -> Kept:
         self._last_number += 1
-        kept = Kept(self._last_number, wish, config, run, name or run_name(wish), colour, named=bool(name))
+        kept = Kept(self._last_number, wish, config, run, name or run_name(wish.base, config), colour, named=bool(name))
         self._kept[kept.number] = kept
         self._make_room(kept)
         return kept
@@ -132,7 +132,7 @@ class Runs:
     def rename(self, number: int, name: str) -> Kept:
         """Give a run a name; without one it is called after its changes again."""
         kept, name = self._kept[number], plain_name(name)
-        self._kept[number] = replace(kept, name=name or run_name(kept.wish), named=bool(name))
+        self._kept[number] = replace(kept, name=name or run_name(kept.wish.base, kept.config), named=bool(name))
         return self._kept[number]
 
     def delete(self, number: int) -> None:
@@ -190,11 +190,11 @@ def first_wish(base: Config, config: Config) -> Wish:
     return wish if wish.config() == config else Wish(config)
 
 
-def run_name(wish: Wish) -> str:
-    """What was changed: "Speed 15 → 22 km/h"; without changes the preset's name."""
-    changes = differences(wish.base, wish.config())
+def run_name(base: Config, config: Config) -> str:
+    """What was changed in a preset: "Speed 15 → 22 km/h"; without changes the preset's name."""
+    changes = differences(base, config)
     if not changes:
-        return wish.base.name
+        return base.name
     more = len(changes) - NAMED_CHANGES
     return ", ".join(changes[:NAMED_CHANGES]) + (f" and {more} more" if more > 0 else "")
 

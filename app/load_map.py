@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from base64 import b64encode
 from io import BytesIO
-from itertools import pairwise
 
 import numpy as np
 from PIL import Image
@@ -79,10 +78,10 @@ def ticks(low: float, high: float, least: float = TICKS) -> list[float]:
 
 def _picture(load: np.ndarray, top: float, columns: int) -> str:
     """The map as the address of a PNG picture, a pixel for each wheel and each of at most `columns` times."""
-    edges = np.linspace(0, len(load), min(len(load), columns) + 1).round().astype(int)
-    highest = np.array([load[i:k].max(axis=0) for i, k in pairwise(edges)]).T  # (K, columns)
+    starts = np.linspace(0, len(load), min(len(load), columns), endpoint=False).round().astype(int)
+    highest = np.maximum.reduceat(load, starts, axis=0).T  # (K, columns)
     pixels = load_colours(np.nan_to_num(highest) / top)
     pixels[~(highest > 0), 3] = 0
     buffer = BytesIO()
-    Image.fromarray(pixels).save(buffer, "PNG")
+    Image.fromarray(pixels).save(buffer, "PNG", compress_level=1)  # a third larger, in a quarter of the time
     return f"data:image/png;base64,{b64encode(buffer.getvalue()).decode()}"

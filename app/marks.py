@@ -33,6 +33,14 @@ DEFAULTS = {
 }  # part -> whether it is shown at first
 
 
+def _amounts(colours: np.ndarray) -> np.ndarray:
+    """sRGB 0…255 as amounts of light 0…255."""
+    return np.round(255 * light(colours)).astype(np.uint8)
+
+
+_IN_AIR_AMOUNTS = _amounts(np.array(IN_AIR))
+
+
 class Marks:
     """The marks of one vehicle in a viser scene."""
 
@@ -54,6 +62,7 @@ class Marks:
         ring = lathe([(layout.radius, 0.008 * s), (layout.radius, -0.008 * s), (RING * layout.radius, -0.008 * s)],
                      (0, 0, 0, 255))  # fmt: skip
         places = ring_places(scene, now)
+        self._ringed = True  # some wheel has a ring
         self._rings = api.add_batched_meshes_simple(
             "/marks/rings",
             ring.vertices,
@@ -113,7 +122,9 @@ class Marks:
             update(self._static, points=static_marks(scene, now))
         if shown["travel"]:
             update(self._travel, points=travel_bars(scene, now))
-        if self._rings.visible:
+        ringed = shown["load_colours"] or (shown["in_air"] and bool((now.contacts.load <= 0.0).any()))
+        if self._rings.visible and (ringed or self._ringed):
+            self._ringed = ringed
             places = ring_places(scene, now)
             colours, sizes = ring_looks(scene, now, shown["in_air"], shown["load_colours"])
             update(
@@ -169,10 +180,11 @@ def ring_looks(scene: Scene, now: Snapshot, in_air: bool, coloured: bool) -> tup
     """Colours (2 W, 3), 0…255 of light, and sizes (2 W,) of the rings; size 0 where there is nothing to say."""
     load = now.contacts.load
     flying = load <= 0.0
-    colours = load_colours(load / scene.load_top)[:, :3]
-    colours[flying & in_air] = IN_AIR
+    amounts = np.full((len(load), 3), _IN_AIR_AMOUNTS)
+    if coloured:
+        told = ~(flying & in_air)
+        amounts[told] = _amounts(load_colours(load[told] / scene.load_top)[:, :3])
     sizes = ((flying & in_air) | (~flying & coloured)).astype(np.float32)
-    amounts = np.round(255 * light(colours)).astype(np.uint8)
     return np.tile(amounts, (len(SIDES), 1)), np.tile(sizes, len(SIDES))
 
 

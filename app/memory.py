@@ -84,7 +84,8 @@ def _run(values: Any) -> Kept:
     wish, name, colour = _wish(values), plain_name(str(values["name"])), values["colour"]
     if colour not in RUN_COLOURS:
         raise ValueError("no colour of a run")
-    return Kept(0, wish, wish.config(), None, name or run_name(wish), colour, named=bool(name))
+    config = wish.config()
+    return Kept(0, wish, config, None, name or run_name(wish.base, config), colour, named=bool(name))
 
 
 def _usable(read: Callable[[Any], T], values: Any) -> T | None:

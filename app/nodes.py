@@ -155,7 +155,7 @@ class RoadNodes:
         reach = (layout.front - layout.rear) / 2 + 1.8 * layout.scale
         self._strip = RoadStrip(reach, layout.road_half_width)
         self._shown: tuple[Profile, float, float] | None = None  # of the road; where the strip stands, its foot
-        self._meshes: list[np.ndarray] = []
+        self._meshes: list[np.ndarray] = []  # of the tiles from there on, rounded
         self._shift = 0.0
         self._tiles = [
             api.add_mesh_simple(f"/road/{name}", np.zeros((3, 3)), faces, cast_shadow=False)
@@ -169,17 +169,18 @@ class RoadNodes:
     def draw(self, scene: Scene, now: Snapshot) -> None:
         """Show the road around the vehicle; nothing is sent while it looks the same."""
         start, foot = self._strip.start(now.x), scene.lowest - GROUND_BELOW
-        shift = start - now.origin
+        shift = round((start - now.origin) / ROUNDING) * ROUNDING
         road = scene.ground.road.profile
         if self._shown is None or self._shown[0] is not road or self._shown[1:] != (start, foot):
             self._shown = road, start, foot
-            self._meshes = self._strip.vertices(start, scene.ground.height, foot)
+            exact = self._strip.vertices(start, scene.ground.height, foot)
+            self._meshes = [np.round(vertices / ROUNDING) * ROUNDING for vertices in exact]
         elif shift == self._shift:
             return
         self._shift = shift
         along = np.array([shift, 0.0, 0.0], dtype=np.float32)
         for tiles, vertices in zip(self._tiles, self._meshes, strict=True):
-            update(tiles, vertices=np.round((vertices + along) / ROUNDING) * ROUNDING)
+            update(tiles, vertices=vertices + along)
 
     def remove(self) -> None:
         for tiles in self._tiles:

@@ -21,6 +21,11 @@ def plot_page() -> str:
     return f'<img hidden src="data:," onerror="{html.escape(script)}"><style>{style}</style>'
 
 
+def tab_html(name: str) -> str:
+    """HTML of something invisible in a tab, by which the page knows whether that tab is in front."""
+    return f'<trackride-tab name="{name}"></trackride-tab>'
+
+
 def now_html(time: float) -> str:
     """HTML that moves the time cursor in all plots."""
     return _marks_html(TIME_KEY, [(round(time, 4), "")])

@@ -1,13 +1,15 @@
 """The plots of one browser tab and what is read beside them: tabs in a docked panel.
 
-Loads and Ride follow every run. Comfort, Spectrum, Load map and Trust cost more than a drag may take: they follow, one
-at a time, when no newer run has come for CALM. While a drive goes on they follow it once a second, and say which
-stretch of it they show.
+The curves of a tab in front follow every run. Comfort, Spectrum, Load map and Trust cost more than a drag may take:
+they follow, one at a time, when no newer run has come for CALM; so do the curves of tabs behind, and all of it at once
+when its tab comes to the front. While a drive goes on, what is in front follows it once a second, and says which
+stretch of it it shows.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from time import monotonic
 from typing import Any
 
@@ -15,11 +17,11 @@ import viser
 
 from app.about import about_html
 from app.charts import Charts
-from app.colours import wheel_palette
+from app.colours import Palette, wheel_palette
 from app.comfort_page import comfort_headline, comfort_page
 from app.load_map import load_map
-from app.plot_page import now_html, plot_page
-from app.plots import load_plots
+from app.plot_page import now_html, plot_page, tab_html
+from app.plots import Plot, load_plots
 from app.ride_plots import ride_plots
 from app.screen import chart_height
 from app.spectrum_panel import Analyst, SpectrumPanel
@@ -30,52 +32,70 @@ from model.trajectory import Trajectory
 CALM = 0.3  # s
 DRIVE_EVERY = 1.0  # s
 HEADLINE = 30  # px that the headline above the plots of the ride takes
+LOADS, RIDE, SPECTRUM, LOAD_MAP, RUNS, TRUST, ABOUT = TABS = (
+    "Loads", "Ride", "Spectrum", "Load map", "Runs", "Trust", "About",
+)  # fmt: skip
+
+
+@dataclass
+class Part:
+    """Part of a tab that shows a run."""
+
+    tab: str
+    show: Callable[[Trajectory], None]
+    quick: bool = False  # enough to follow every run of a drag
+    version: int = 0  # of what it shows
+    shown_at: float = 0.0  # monotonic s
 
 
 class PlotPanel:
-    """Tabs in a panel of `gui`. `runs_tab` is left empty, for others to fill."""
+    """Tabs in a panel of a client's interface. `runs_tab` is left empty, for others to fill."""
 
-    def __init__(
-        self,
-        gui: viser.GuiApi,
-        panel: Any,
-        page_height: int,
-        dark: bool,
-        analyst: Analyst,
-        flush: Callable[[], None],
-    ) -> None:
-        """flush: sends at once what has been changed, so that the page draws the loads before it gets the rest."""
-        self._page_height, self._dark, self._flush = page_height, dark, flush
+    def __init__(self, client: viser.ClientHandle, panel: Any, page_height: int, dark: bool, analyst: Analyst) -> None:
+        self._client, self._page_height, self._dark = client, page_height, dark
         self._run: Trajectory | None = None
         self._baseline: Trajectory | None = None
         self._driving = False
         self._road: Road | None = None  # under the stretch of a drive that stands
         self._wheel: int | None = None
-        self._shown_at = self._followed_at = 0.0  # monotonic s: the run, and when the tabs began to follow one
-        self._followed: Trajectory | None = None  # the run that they then began to follow
-        self._behind: list[Callable[[Trajectory], None]] = []  # tabs that do not show it yet
+        self._shown_at = 0.0  # monotonic s: when the run came
+        self._version = 0  # of what is to be shown: counts runs, baselines and looks
+        self.in_front = frozenset([LOADS])  # tabs
         self.time = 0.0  # of the time cursor, s
-        loads, ride, spectrum = (panel.add_tab(name) for name in ("Loads", "Ride", "Spectrum"))
-        load_tab, self.runs_tab, trust, about = (panel.add_tab(name) for name in ("Load map", "Runs", "Trust", "About"))
-        self._stretches: dict[str, Any] = {}
-        for name, tab in (("Spectrum", spectrum), ("Load map", load_tab), ("Trust", trust)):
+        gui = client.gui
+        tabs = {name: panel.add_tab(name) for name in TABS}
+        self.runs_tab = tabs[RUNS]
+        for name, tab in tabs.items():
             with tab:
+                gui.add_html(tab_html(name), order=float("-inf"))
+        self._stretches: dict[str, Any] = {}
+        for name in (SPECTRUM, LOAD_MAP, TRUST):
+            with tabs[name]:
                 self._stretches[name] = gui.add_html("", order=-1.0)
-        with ride:
+        with tabs[RIDE]:
             self._headline = gui.add_html("")
             self._comfort = gui.add_html("", order=float("inf"))
-        self._loads, self._ride = Charts(gui, loads), Charts(gui, ride)
-        self.spectrum = SpectrumPanel(gui, spectrum, analyst)
-        with load_tab:
+        self._loads, self._ride = Charts(gui, tabs[LOADS]), Charts(gui, tabs[RIDE])
+        self.spectrum = SpectrumPanel(gui, tabs[SPECTRUM], analyst)
+        with tabs[LOAD_MAP]:
             self._map = gui.add_html("")
-        with trust:
+        with tabs[TRUST]:
             self._trust = gui.add_html("")
             gui.add_html(errata_html())
-        with about:
+        with tabs[ABOUT]:
             gui.add_html(about_html())
-        with loads:
+        with tabs[LOADS]:
             gui.add_html(plot_page())
             self._now = gui.add_html(now_html(0.0))
+        self._spectrum_part = Part(SPECTRUM, self._show_spectrum)
+        self._parts = (
+            Part(LOADS, self._show_loads, quick=True),
+            Part(RIDE, self._show_ride, quick=True),
+            Part(RIDE, self._show_comfort),
+            self._spectrum_part,
+            Part(LOAD_MAP, self._show_map),
+            Part(TRUST, self._show_trust),
+        )
 
     def show(
         self,
@@ -90,25 +110,28 @@ class PlotPanel:
 
         driving: the run is the latest stretch of an endless drive; road: under it, when the drive stands.
         """
-        if not driving or not self._driving or baseline is not self._baseline:
-            self._followed, self._behind = None, []
         self._run, self._baseline, self._driving, self._road = run, baseline, driving, road
         self._shown_at = monotonic()
-        self._plot()
+        self._follow()
         self.spectrum.offer_modes(not driving)
         self.point_at(time)
 
     def settle(self) -> None:
-        """Bring one more tab up to date when it is time for that. To be called ten times a second."""
-        now, run = monotonic(), self._run
-        if run is None:
-            return
-        due = now - self._shown_at > CALM or (self._driving and now - self._followed_at > DRIVE_EVERY)
-        if run is not self._followed and due and not self._behind:
-            self._followed, self._followed_at = run, now
-            self._behind = [self._show_comfort, self._show_spectrum, self._show_map, self._show_trust]
-        if self._behind:
-            self._behind.pop(0)(run)
+        """Bring one more part up to date when it is time for that. To be called ten times a second."""
+        now = monotonic()
+        calm = now - self._shown_at > CALM
+        for part in sorted(self._behind(), key=self._is_behind):
+            seen = part.tab in self.in_front
+            if calm or (self._driving and seen and now - part.shown_at > DRIVE_EVERY):
+                self._update(part)
+                return
+
+    def set_in_front(self, tabs: frozenset[str]) -> None:
+        """Say which tabs are seen. What has come to the front is brought up to date."""
+        self.in_front = tabs
+        for part in self._behind():
+            if part.tab in tabs:
+                self._update(part)
 
     def point_at(self, time: float) -> None:
         """Move the time cursor, s."""
@@ -120,38 +143,70 @@ class PlotPanel:
         """Let a wheel, in the model's order, stand alone among faded ones; None: all of them as they are."""
         if wheel != self._wheel:
             self._wheel = wheel
-            self._plot()
+            self._redraw()
 
     def set_page_height(self, page_height: int) -> None:
         """Make the charts fill a page of this height, px."""
         self._page_height = page_height
-        self._plot()
+        self._redraw()
         self.redraw_spectrum()
 
     def redraw_spectrum(self) -> None:
-        """Show another spectrum, or the same in another way."""
-        if self._show_spectrum not in self._behind:
-            self._behind.insert(0, self._show_spectrum)
+        """Show another spectrum, or the same in another way, soon."""
+        self._spectrum_part.version, self._spectrum_part.shown_at = -1, 0.0
 
     def set_dark(self, dark: bool) -> None:
         """Change all colours."""
         self._dark = dark
-        self._plot()
+        self._redraw()
         self.redraw_spectrum()
 
-    def _plot(self) -> None:
-        """What follows every run."""
-        if self._run is None:
-            return
-        run = self._run
+    def _behind(self) -> list[Part]:
+        """Parts that do not show what is to be shown."""
+        return [part for part in self._parts if part.version != self._version and self._run is not None]
+
+    def _is_behind(self, part: Part) -> bool:
+        return part.tab not in self.in_front
+
+    def _follow(self) -> None:
+        """Show what follows every run."""
+        self._version += 1
+        for part in self._behind():
+            if part.quick and part.tab in self.in_front:
+                self._update(part)
+
+    def _redraw(self) -> None:
+        """Show the same curves in another way, and leave what costs more as it is."""
+        slow = [part for part in self._parts if not part.quick and part.version == self._version]
+        self._follow()
+        for part in slow:
+            part.version = self._version
+
+    def _update(self, part: Part) -> None:
+        assert self._run is not None
+        part.version, part.shown_at = self._version, monotonic()
+        part.show(self._run)
+
+    def _show_loads(self, run: Trajectory) -> None:
+        self._plot(run, load_plots, self._loads, self._page_height)
+
+    def _show_ride(self, run: Trajectory) -> None:
+        self._plot(run, ride_plots, self._ride, self._page_height - HEADLINE)
+
+    def _plot(
+        self,
+        run: Trajectory,
+        plots_of: Callable[[Trajectory, Palette, Trajectory | None, int | None], tuple[Plot, ...]],
+        charts: Charts,
+        height: int,
+    ) -> None:
+        """Show curves, and send them at once: the page draws them before it gets the rest."""
         palette = wheel_palette(run.system.n, run.system.m, self._dark)
         wheel = self._wheel if self._wheel is not None and self._wheel < len(palette.wheels) else None
-        for charts, plots, height in (
-            (self._loads, load_plots(run, palette, self._baseline, wheel), self._page_height),
-            (self._ride, ride_plots(run, palette, self._baseline, wheel), self._page_height - HEADLINE),
-        ):
+        plots = plots_of(run, palette, self._baseline, wheel)
+        with self._client.atomic():
             charts.show(plots, chart_height(height, len(plots)))
-            self._flush()
+        self._client.flush()
 
     def _show_comfort(self, run: Trajectory) -> None:
         self._headline.content = comfort_headline(run)
@@ -161,15 +216,15 @@ class PlotPanel:
         colour = wheel_palette(1, 0, self._dark).hull
         height = chart_height(self._page_height, 2)
         self.spectrum.show(run, self._baseline, colour, height)
-        self._say_stretch("Spectrum", run)
+        self._say_stretch(SPECTRUM, run)
 
     def _show_map(self, run: Trajectory) -> None:
         self._map.content = load_map(run, self._baseline)
-        self._say_stretch("Load map", run)
+        self._say_stretch(LOAD_MAP, run)
 
     def _show_trust(self, run: Trajectory) -> None:
         self._trust.content = trust_html(run, self._driving, self._road)
-        self._say_stretch("Trust", run)
+        self._say_stretch(TRUST, run)
 
     def _say_stretch(self, tab: str, run: Trajectory) -> None:
         self._stretches[tab].content = stretch_html(run) if self._driving else ""

@@ -9,9 +9,9 @@ from typing import Literal
 import numpy as np
 
 from app.colours import Palette
+from app.thinning import thin
 from model.trajectory import Trajectory
 
-BUCKETS = 400  # stretches of time, each drawn by its smallest and its largest value: about as many as pixels
 DECIMALS = 2  # of the values that are plotted and read
 SMALL = 0.5  # kN on a wheel: the loads of such a vehicle need more decimals
 TIME = "Time, s"
@@ -103,8 +103,8 @@ def time_plot(
     decimals: int = DECIMALS,
 ) -> Plot:
     """A plot over time. values: run -> (N, C), a column for each curve; at_rest: a dotted line and its height."""
-    columns = [values(run)]
-    finite = np.isfinite(columns[0]).all(axis=1)
+    shown = values(run)
+    columns, finite = [shown], np.isfinite(shown)
     if baseline is not None and len(baseline.t):
         others = values(baseline)[:, : len(curves)]
         curves = curves + [
@@ -112,14 +112,15 @@ def time_plot(
             for curve in curves[: others.shape[1]]
         ]
         columns += [at_times(run.t, baseline.t, others)]
-    time, thinned = run.t, np.hstack(columns)
+    time, thinned = run.t, np.hstack(columns) if len(columns) > 1 else shown
     if not finite.all():
-        time, thinned = time[finite], thinned[finite]
+        samples = finite.all(axis=1)
+        time, thinned = time[samples], thinned[samples]
     time, thinned = thin(time, thinned)
     if at_rest is not None:
         height, line = at_rest
         curves = [*curves, line]
-        thinned = np.column_stack([thinned, np.full(len(time), height)])
+        thinned = np.vstack([thinned.T, np.full(len(time), height)]).T
     return Plot(title, unit, tuple(curves), least, time, np.round(thinned, decimals))
 
 
@@ -130,31 +131,6 @@ def at_times(t: np.ndarray, own: np.ndarray, values: np.ndarray) -> np.ndarray:
     columns = np.column_stack([np.interp(t, own, column) for column in values.T])
     columns[t > own[-1]] = np.nan
     return columns
-
-
-def thin(x: np.ndarray, values: np.ndarray, buckets: int = BUCKETS) -> tuple[np.ndarray, np.ndarray]:
-    """(K,) and (K, C) with K ≤ 2·buckets that look like the (N,) and (N, C) given.
-
-    Each bucket of samples leaves two: of every column the smallest and the largest value, so that no peak is lost; the
-    smallest first where the bucket rises from its first sample to its last. They stand at its first and last x.
-    """
-    count = len(x)
-    if count <= 2 * buckets:
-        return x, values
-    size = -(-count // buckets)
-    full = -(-count // size)
-    # The last bucket is filled up with the last sample.
-    padded = np.concatenate([values, np.repeat(values[-1:], full * size - count, axis=0)])
-    bucketed = padded.reshape(full, size, -1)
-    low, high = bucketed[:, 0].copy(), bucketed[:, 0].copy()
-    for k in range(1, size):
-        np.minimum(low, bucketed[:, k], out=low)
-        np.maximum(high, bucketed[:, k], out=high)
-    rises = bucketed[:, 0] <= bucketed[:, -1]
-    pairs = np.stack([np.where(rises, low, high), np.where(rises, high, low)], axis=1)
-    first = np.arange(full) * size
-    ends = np.stack([first, np.minimum(first + size, count) - 1], axis=1)
-    return x[ends].ravel(), pairs.reshape(2 * full, -1)
 
 
 def _at_rest(run: Trajectory, curves: list[Curve], colour: str) -> tuple[float, Curve]:

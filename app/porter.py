@@ -96,7 +96,7 @@ class Order:
     @property
     def title(self) -> str:
         """Of a page: what was run, and what was changed."""
-        name = run_name(self.wish)
+        name = run_name(self.wish.base, self.run.config)
         whole = name if name == self.wish.base.name else f"{self.wish.base.name}: {name}"
         return f"{whole}, {self.stretch}" if self.stretch else whole
 

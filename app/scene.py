@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from app.track import ARC, points_along, track_path
 from assets.layout import Layout, layout_of
 from assets.surroundings import AHEAD, BEHIND, TILES, shadow
 from model.live import REBASE
@@ -25,8 +26,6 @@ from model.vehicle import System
 
 SIDES = np.array([-1.0, 1.0])  # right, left
 FACED = ("road_wheels", "sprockets", "imaginary_wheels")  # have an outside: on the left they are turned about z
-ARC = np.linspace(0.0, 1.0, 9)  # where the track's path has points along its arc around a wheel
-SHARPEST_HOLLOW = 2.0  # rad: a belt that turns by more goes clockwise around a wheel
 NO_LOAD = 1e-3  # m of arrow for a wheel without load: its head stays in the ground
 GRAIN = 0.02  # m between the heights of a ground line
 FADE = 15.0  # m over which the ground goes over into a level where no road is laid
@@ -265,13 +264,9 @@ class Places:
 
     def pins(self, path: np.ndarray, travelled: float, origin: float) -> np.ndarray:
         """Pins (shoes + 1,) of the track along its closed path (K,); those below stay where they are on the road."""
-        closed = np.append(path, path[0])
-        along = np.zeros(len(closed))
-        np.cumsum(np.abs(closed[1:] - closed[:-1]), out=along[1:])
-        length = along[-1]
-        start = along[self.under_middle] + path[self.under_middle].real - self.middle - travelled + origin
-        step = np.arange(self.shoe_count + 1) + travelled / self.shoe_pitch % 1.0
-        return np.interp((start + step * (length / self.shoe_count)) % length, along, closed)
+        beyond = float(path[self.under_middle].real) - self.middle - travelled + origin
+        part = travelled / self.shoe_pitch % 1.0
+        return points_along(path, self.under_middle, beyond, self.shoe_count, part)
 
     def poses(self, points: np.ndarray, angles: np.ndarray) -> dict[str, Poses]:
         """Points (K,) and angles θ (K,) of all rows, by the name of the snapshot's field."""
@@ -315,24 +310,3 @@ def live_scene(recent: Trajectory, road: Road, like: Scene | None = None) -> Sce
         return Scene(recent, system, layout, Places(system, layout), ground, passed)
     before = like.travel if recent.t[0] > like.trajectory.t[0] else None
     return Scene(recent, system, layout, places, ground, passed, before)
-
-
-def track_path(centres: np.ndarray, radii: np.ndarray) -> np.ndarray:
-    """The closed line (9 C,) of a belt around circles, clockwise; C centres (C,) in that order, radii (C,).
-
-    The belt runs straight between neighbours and lies on a circle where it bends around it. Where it bends the other
-    way (a wheel higher than its neighbours) it passes outside of that circle.
-    """
-    following = np.arange(1, len(centres) + 1) % len(centres)
-    ahead = centres[following] - centres
-    distance = np.abs(ahead)
-    sine = np.minimum(np.maximum((radii - radii[following]) / distance, -1.0), 1.0)
-    leaving = ahead / distance * (sine + 1j * np.sqrt(1 - sine**2))  # outward normals of the straight runs
-    entering = leaving[following - 2]
-    bend = leaving * entering.conj()
-    turn = np.angle(bend)
-    turn = np.where(turn > SHARPEST_HOLLOW, turn - 2 * np.pi, turn)
-    outward = entering[:, None] * np.exp(1j * turn[:, None] * ARC)
-    mitre = (entering + leaving) / np.maximum(1 + bend.real, 0.1)
-    outward = np.where(turn[:, None] > 0.0, mitre[:, None], outward)
-    return (centres[:, None] + radii[:, None] * outward).ravel()

@@ -1,4 +1,7 @@
-"""The explorer: one web server, one Session for each browser tab."""
+"""The explorer: one web server, one Session for each browser tab.
+
+The server listens at once: what a session needs is loaded while the first page loads, which takes as long.
+"""
 
 from __future__ import annotations
 
@@ -11,13 +14,16 @@ import socket
 import sys
 import warnings
 import webbrowser
-from typing import Any
+from functools import cache
+from typing import TYPE_CHECKING, Any
 
 import viser
 from rich.console import Console
 
-from app.session import Session
 from model.config import Config, load_config, preset_names
+
+if TYPE_CHECKING:
+    from app.session import Session
 
 HOST, PORT = "127.0.0.1", 8080
 PORTS_TO_TRY = 100
@@ -39,7 +45,6 @@ class Explorer:
         the sessions.
         """
         sys.setswitchinterval(HAND_OVER)  # a run waits between its chunks for panels that are being filled
-        gc.freeze()  # all that has been imported stays: looking through it would hold up a drag for 100 ms
         presets = {name: load_config(name) for name in preset_names()}
         presets.setdefault(preset, config)
         self._sessions: dict[int, Session] = {}
@@ -51,7 +56,7 @@ class Explorer:
         @self.server.on_client_connect
         def _(client: viser.ClientHandle) -> None:
             try:
-                self._sessions[client.client_id] = Session(client, presets, preset, config, **session)
+                self._sessions[client.client_id] = _session_class()(client, presets, preset, config, **session)
             except Exception:
                 logging.getLogger("trackride").exception("a tab could not be set up")
                 client.add_notification("The explorer could not start", "Details are in the terminal.", color="red")
@@ -85,6 +90,27 @@ class _Server(viser.ViserServer):
         """Never: a visitor's message would open a public tunnel to this machine."""
 
 
+@cache
+def _session_class() -> type[Session]:
+    from app.session import Session
+
+    gc.freeze()  # all that has been imported stays: looking through it would hold up a drag for 100 ms
+    return Session
+
+
+def prepare() -> None:
+    """Load what sessions need; the very first time, compile it."""
+    _session_class()
+    from app import thinning, track
+    from assets import solids
+    from model.simulate import warm_up
+
+    thinning.warm_up()
+    track.warm_up()
+    warm_up()
+    solids.warm_up()
+
+
 def serve(config: Config, preset: str, host: str = HOST, port: int = PORT, open_browser: bool = True) -> None:
     """Run the explorer until Ctrl+C. Exits with a message when it cannot listen."""
     warnings.filterwarnings("ignore", message="Queued a .* on a closed connection")
@@ -102,6 +128,7 @@ def serve(config: Config, preset: str, host: str = HOST, port: int = PORT, open_
         console.print(f"Trackride explorer: [bold]{explorer.address}[/bold]   (Ctrl+C ends it)")
         if open_browser and not webbrowser.open(explorer.address):
             console.print("No browser could be started; open the address above in one.")
+        prepare()
         explorer.server.sleep_forever()
     except KeyboardInterrupt:
         console.print("\nStopping …")

@@ -156,6 +156,11 @@ class Session:
             self._in_view = in_view
             self._pace()
 
+    def set_in_front(self, tabs: frozenset[str]) -> None:
+        """Only the tabs that are seen keep up with a drag."""
+        self._intend("front", lambda: self._window.set_in_front(tabs))
+        self._wake.set()
+
     def _pace(self, anew: bool = False) -> None:
         """Tell the runner how fast to drive, if at all. Under the lock."""
         speed = self._playback.speed if self._playback.playing and self._in_view else 0.0

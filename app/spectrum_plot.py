@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.plots import Curve, Plot, thin
+from app.plots import Curve, Plot
+from app.thinning import thin
 from model.modes import Modes
 from model.signals import CENTRE_OF_MASS, seat
 from model.spectrum import acceleration_density, acceleration_spectrum

@@ -60,7 +60,7 @@ class Stage:
         self._recentre = False  # bring the view to the vehicle once, though it does not follow
 
     def show(self, trajectory: Trajectory) -> None:
-        """Take over a run, at the time drawn last. Nodes are made anew only where their shape has changed.
+        """Take over a run for the next `draw`. Nodes are made anew only where their shape has changed.
 
         A run that broke down before its first sample leaves the former one.
         """
@@ -68,7 +68,6 @@ class Stage:
             return
         self._set_live(False)
         self._take(build_scene(trajectory, self._scene))
-        self.draw(self._time)
 
     def show_live(self, recent: Trajectory, road: Road) -> None:
         """Take over the newest moments of an endless drive, up to 30 times a second; then `draw` a time among them.

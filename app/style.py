@@ -1,4 +1,4 @@
-"""The page's look and keys: theme, a few rules of CSS, keys that leave the camera alone, hints, whether it is seen."""
+"""The page's look and keys: theme, a few rules of CSS, keys that leave the camera alone, hints, what of it is seen."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ PAGE = """<img hidden src="data:," onerror="
     });
   }"><p class="trackride-intro">Move a slider: the run is computed anew. Ctrl+K: all keys.</p>
 <style id="trackride-style" data-in-view="IN_VIEW">
-  [data-trackride="page"] + div { display: none; }
+  [data-trackride="page"] + div, [data-trackride="page"] + div + div { display: none; }
   [data-trackride="panel"] { padding-right: 4px; }
   [data-trackride="panel"] div[style*="flex-shrink: 0"] { width: 9.6em !important; }
   [data-trackride="panel"] .mantine-Paper-root div[style*="flex-shrink: 0"] { width: 8.96em !important; }
@@ -63,12 +63,17 @@ def apply_theme(gui: viser.GuiApi, dark: bool) -> None:
     gui.configure_theme(dark_mode=dark, brand_color=BRAND, show_logo=False, show_share_button=False)
 
 
-def add_page(gui: viser.GuiApi) -> viser.GuiCheckboxHandle:
-    """Add rules and keys. The checkbox, which nobody sees, is ticked while the page is in view."""
+def add_page(gui: viser.GuiApi) -> tuple[viser.GuiCheckboxHandle, viser.GuiTextHandle]:
+    """Add rules and keys, and two controls that nobody sees but the page sets.
+
+    The checkbox is ticked while the page is in view. The text names the tabs in front, with commas between;
+    assets/plots.js writes it as soon as the page shows the panels.
+    """
     page = gui.add_html("")
     in_view = gui.add_checkbox("In view", True)
+    in_front = gui.add_text("Tabs in front", "")
     page.content = PAGE.replace("IN_VIEW", in_view._impl.uuid)
-    return in_view
+    return in_view, in_front
 
 
 def add_hints(gui: viser.GuiApi) -> None:

@@ -74,10 +74,10 @@ class Viewer(Protocol):
 
 
 class ViewPanel:
-    """A folder in the present container of `gui`."""
+    """Fills a folder of `gui`."""
 
-    def __init__(self, gui: viser.GuiApi, dark: bool, viewer: Viewer) -> None:
-        with gui.add_folder("View", expand_by_default=False):
+    def __init__(self, gui: viser.GuiApi, folder: viser.GuiFolderHandle, dark: bool, viewer: Viewer) -> None:
+        with folder:
             views = gui.add_button_group("Look from", tuple(VIEWS), hint=LOOK)
             self._switches: dict[str, Any] = {
                 attribute: gui.add_checkbox(label, on, hint=hint) for attribute, (label, on, hint) in SWITCHES.items()

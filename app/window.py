@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Callable, Mapping
 from time import monotonic
 from typing import Any, Protocol
@@ -18,14 +17,16 @@ from app.driving import DriveState
 from app.exports_panel import Exporter, ExportsPanel
 from app.keys import Keys, add_keys
 from app.mode_show import PERIOD, ModeShow
+from app.notices import Notices
 from app.playback import Playback
 from app.playback_panel import PlaybackPanel, Player
-from app.plot_panel import PlotPanel
+from app.plot_panel import RUNS, PlotPanel
 from app.road_view import RoadAhead
 from app.runner import Driven, Failed, Finished, Refused
 from app.runs_panel import Keeping, RunsPanel
 from app.screen import LEFT, Layout, Screen
 from app.spectrum_panel import Analyst
+from app.status import BUSY_DELAY, drive_facts, progress_line, run_line, status_line
 from app.style import add_hints, add_page, apply_theme
 from app.view_panel import Viewer, ViewPanel
 from app.wheel_card import Picker, WheelCard
@@ -34,11 +35,9 @@ from model.ride import WheelState
 from model.road import Road
 from model.trajectory import Trajectory
 
-BUSY_DELAY = 0.2  # s before a run is called under way: quick ones are not worth a flicker
-SLOW_START = 1.5  # s without progress: the model is being compiled
-FIRST_START = "compiling the model, for half a minute…"
 ROAD_EVERY = 0.35  # s between two side views of the road
-NOTICE_TIME = 10.0  # s that a notification stays
+FOLDERS = "View", "Export", "Import and presets"
+LAID_OUT_WITHIN = 3.0  # s in which a page says that its panels stand, or else is taken to have them
 
 
 class Scene(Protocol):
@@ -77,6 +76,8 @@ class Actions(Wishes, Player, Viewer, Picker, Keeping, Exporter, Analyst, Keys, 
 
     def set_in_view(self, in_view: bool) -> None: ...
 
+    def set_in_front(self, tabs: frozenset[str]) -> None: ...
+
 
 class Window:
     """Panels, plots and 3-D view of one tab."""
@@ -91,16 +92,19 @@ class Window:
         make_scene: Callable[[viser.ClientHandle, bool], Scene],
         dark: bool,
     ) -> None:
-        self._client, self._dark = client, dark
+        self._client, self._dark, self._actions = client, dark, actions
         self._run: Trajectory | None = None
         self._baseline: Trajectory | None = None
         self._drive: DriveState | None = None  # the last of the drive that is shown
         self._drawn: tuple[int, float] | None = None  # run and time that the 3-D view shows
+        self._to_scene: Trajectory | None = None  # a run that the 3-D view has not got yet
+        self._stands_at = monotonic() + LAID_OUT_WITHIN  # when the page has its panels, s
+        self._filled = False  # the page has what is not seen at first
         self._mode: ModeShow | None = None  # in the run's place
         self._run_number = 0
         self._road_due = 0.0  # monotonic s
         self._road_ahead = RoadAhead()
-        self._notices: dict[str, viser.NotificationHandle] = {}
+        self._notices = Notices(client)
         self._screen = Screen(client.camera.image_width, client.camera.image_height)
         layout = self._screen.first()
         gui = client.gui
@@ -109,23 +113,35 @@ class Window:
             gui.set_panel_label("Trackride")
             gui.main_panel.dock_left()
             gui.main_panel.set_width(LEFT)
-            in_view = add_page(gui)
+            in_view, in_front = add_page(gui)
             in_view.on_update(by_user(lambda event: actions.set_in_view(event.target.value), actions.fail))
+            in_front.on_update(
+                by_user(lambda event: actions.set_in_front(frozenset(event.target.value.split(","))), actions.fail)
+            )
             self._controls = ControlPanel(gui, presets, preset, config, actions)
             with self._controls.middle:
-                self._view = ViewPanel(gui, dark, actions)
-                self.exports = ExportsPanel(gui, actions)
+                self._folders = [gui.add_folder(name, expand_by_default=False) for name in FOLDERS]
             self._plots_panel = gui.add_panel()
-            self._plots = PlotPanel(gui, self._plots_panel, layout.page_height, dark, actions, client.flush)
+            self._plots = PlotPanel(client, self._plots_panel, layout.page_height, dark, actions)
             self.runs = RunsPanel(gui, self._plots.runs_tab, actions)
             self._plots_panel.dock_right()
             self._player = PlaybackPanel(gui, actions)
             self._card = WheelCard(gui, actions)
             self._resize(layout)
-            add_keys(gui, actions)
-            add_hints(gui)
         self.scene = make_scene(client, dark)
         self.scene.on_pick(actions.pick_wheel)
+
+    def _fill(self) -> None:
+        """Add what is not seen at first: half of the page's work, and the rest is there sooner without it."""
+        gui, actions = self._client.gui, self._actions
+        view, out, into = self._folders
+        with self._client.atomic():
+            self._controls.fill()
+            self._view = ViewPanel(gui, view, self._dark, actions)
+            self.exports = ExportsPanel(gui, out, into, actions)
+            add_keys(gui, actions)
+            add_hints(gui)
+        self._filled = True
 
     # ── Runs ──
 
@@ -135,16 +151,15 @@ class Window:
         run = done.trajectory
         self._run, self._run_number, self._drive = run, done.wish.number, None
         self._plot(time)
-        self.scene.show(run)
-        self._drawn = None
+        self._to_scene, self._drawn = run, None
         if settled:
             self._controls.show(run.config, touched=done.wish.touched)
         if run.complete:
-            self._forget("diverged")
+            self._notices.forget("diverged")
         else:
             body = f"{run.status[0].upper()}{run.status[1:]}. The plots show the run up to there. {run.advice}"
-            self._notify("diverged", "The run did not come to its end", body, "orange", stays=True)
-        self._forget("refused")
+            self._notices.show("diverged", "The run did not come to its end", body, "orange", stays=True)
+        self._notices.forget("refused")
 
     def show_drive(self, driven: Driven, time: float, *, settled: bool) -> None:
         """Show how far the drive has come, or where in its past the user is, at `time`, s.
@@ -157,6 +172,7 @@ class Window:
         if before is None or before.past is not state.past:
             self._run = state.past
             self._plot(time)
+        self._to_scene = None
         self.scene.show_live(state.recent, state.road)
         self.scene.draw(time)
         self._drawn = (self._run_number, time)
@@ -164,9 +180,9 @@ class Window:
             self._controls.show(state.config, touched=driven.wish.touched)
         if state.ended:
             body = f"{state.ended[0].upper()}{state.ended[1:]}. {state.advice} Then press Restart."
-            self._notify("diverged", "The drive came to an end", body, "orange", stays=True)
+            self._notices.show("diverged", "The drive came to an end", body, "orange", stays=True)
         else:
-            self._forget("diverged")
+            self._notices.forget("diverged")
 
     def show_baseline(self, baseline: Trajectory | None) -> None:
         """Compare with this run from now on, or with None no more."""
@@ -183,7 +199,7 @@ class Window:
             self._end_mode()
             return
         x = float(np.interp(self._plots.time, run.t, run.q[:, run.system.chassis, 0]))
-        self._mode = ModeShow(run.config, mode, x)
+        self._mode, self._to_scene = ModeShow(run.config, mode, x), None
         self.scene.show(self._mode.swing)
         self.scene.show_ghost(self._mode.rest)
 
@@ -210,7 +226,7 @@ class Window:
     def refuse(self, refused: Refused, instead: Config) -> None:
         """Say what is wrong with a wish, and go back to the configuration that was good."""
         body = " ".join(refusal(fault, refused.wish.changes.get(fault.path), instead) for fault in refused.faults)
-        self._notify("refused", "Not possible", body, "red")
+        self._notices.show("refused", "Not possible", body, "red")
         self._controls.show(instead)
 
     def show_value(self, key: str, value: Any) -> None:
@@ -222,7 +238,7 @@ class Window:
         return self._controls[key].was_moved_to_end(wished)
 
     def report_failure(self, failed: Failed) -> None:
-        self._notify("refused", "No run", failed.message, "red")
+        self._notices.show("refused", "No run", failed.message, "red")
 
     def show_status(self, under_way: tuple[int, float, float] | None) -> None:
         """Say which run is shown, or how far the next is (number, part done, seconds so far)."""
@@ -233,25 +249,25 @@ class Window:
             facts = f"{mode.frequency:.3g} Hz, shown at {1 / PERIOD:g} Hz · Play: the run"
             self._controls.status.content = status_line(mode.name, facts)
         elif under_way is not None and (under_way[2] > BUSY_DELAY or self._run is None):
-            number, part, seconds = under_way
-            doing = FIRST_START if part == 0 and seconds > SLOW_START else f"computing… {100 * part:.0f} %"
-            self._controls.status.content = status_line(f"Run {number}", doing)
+            self._controls.status.content = progress_line(*under_way)
         elif self._run is not None:
-            run, took = self._run, self._run.statistics.seconds
-            reached = float(run.t[-1]) if len(run.t) else 0.0
-            speed = f"{reached / took:.0f}× real time" if took > 0 else ""
-            facts = f"{reached:.3g} s in {1e3 * took:.0f} ms · {speed}"
-            self._controls.status.content = status_line(
-                f"Run {self._run_number}", facts, "" if run.complete else "stopped early"
-            )
+            self._controls.status.content = run_line(self._run_number, self._run)
 
     # ── Time ──
 
     def draw(self, time: float, elapsed: float = 0.0) -> None:
         """The 3-D view at a time of the run, s, `elapsed` s of real time after it was drawn last.
 
-        Of a drive that goes on, each instant is drawn as it comes.
+        Of a drive that goes on, each instant is drawn as it comes. A page that is still laying out its panels is not
+        given anything more yet.
         """
+        if monotonic() < self._stands_at:
+            return
+        if not self._filled:
+            self._fill()
+        if self._to_scene is not None:
+            self.scene.show(self._to_scene)
+            self._to_scene = None
         if self._mode is not None:
             if self._mode.since is None:
                 self._mode.since = time
@@ -277,7 +293,8 @@ class Window:
         self.scene.write_loads()
         self._show_wheel()
         self._show_road(playback.time)
-        self._view.show_load_scale(self.scene.load_top)
+        if self._filled:
+            self._view.show_load_scale(self.scene.load_top)
 
     def _show_road(self, time: float) -> None:
         """The side view of the road about the vehicle at a time of the run or drive, s.
@@ -298,6 +315,16 @@ class Window:
             self._controls.road_view.content = view
 
     # ── Looks ──
+
+    def set_in_front(self, tabs: frozenset[str]) -> None:
+        """Tell which tabs of the plots are seen, and so that the page stands."""
+        self._stands_at = 0.0
+        self._plots.set_in_front(tabs)
+
+    @property
+    def runs_in_front(self) -> bool:
+        """Whether the tab of the runs is seen."""
+        return RUNS in self._plots.in_front
 
     def fit_page(self) -> None:
         """Sizes of the panels, when the page's has changed."""
@@ -350,10 +377,10 @@ class Window:
 
     def report_error(self, error: Exception) -> None:
         text = str(error) or type(error).__name__
-        self._notify("error", "Something went wrong", f"{text} (details are in the terminal).", "red")
+        self._notices.show("error", "Something went wrong", f"{text} (details are in the terminal).", "red")
 
     def say(self, title: str, body: str) -> None:
-        self._notify("said", title, body, "blue")
+        self._notices.show("said", title, body, "blue")
 
     def show_faults(self, title: str, faults: ConfigError) -> None:
         """All that is wrong with a configuration from outside."""
@@ -361,15 +388,7 @@ class Window:
 
     def show_progress(self, doing: str) -> None:
         """What is being made for a download; empty: nothing."""
-        notice = self._notices.get("progress")
-        if not doing:
-            self._forget("progress")
-        elif notice is not None:
-            notice.body = doing
-        else:
-            self._notices["progress"] = self._client.add_notification(
-                "One moment", doing, loading=True, with_close_button=False, auto_close_seconds=None
-            )
+        self._notices.progress(doing)
 
     def _resize(self, layout: Layout) -> None:
         self._plots_panel.set_width(layout.right)
@@ -382,31 +401,3 @@ class Window:
         drive = self._drive
         road = drive.road if drive is not None and drive.stands else None
         self._plots.show(self._run, self._baseline, time, driving=drive is not None, road=road)
-
-    def _notify(self, kind: str, title: str, body: str, color: Any, stays: bool = False) -> None:
-        """One notification of each kind: a newer one takes the older one's place."""
-        notice = self._notices.get(kind)
-        if notice is not None and (notice.title, notice.body) == (title, body) and stays:
-            return
-        self._forget(kind)
-        self._notices[kind] = self._client.add_notification(
-            title, body, color=color, auto_close_seconds=None if stays else NOTICE_TIME
-        )
-
-    def _forget(self, kind: str) -> None:
-        notice = self._notices.pop(kind, None)
-        if notice is not None:
-            notice.remove()
-
-
-def drive_facts(state: DriveState) -> str:
-    """What the status line says of a drive."""
-    if state.ended:
-        return "it came to an end; look back, or restart"
-    return "look back with ← or the slider" if state.stands else "changes act at once"
-
-
-def status_line(name: str, facts: str, trouble: str = "") -> str:
-    """HTML of the line that says which run this is."""
-    bad = f' · <span class="bad">{html.escape(trouble)}</span>' if trouble else ""
-    return f'<div class="trackride-status"><b>{html.escape(name)}</b> · {html.escape(facts)}{bad}</div>'

@@ -1,5 +1,5 @@
-// What the page itself does about the plots: marks (the time cursor, named frequencies), values at the cursor, zoom, and
-// curves that are hidden with a click on their name.
+// What the page itself does about the plots: marks (the time cursor, named frequencies), values at the cursor, zoom,
+// curves that are hidden with a click on their name, and telling which tabs are in front.
 // viser lists its charts in __viserTestpoints.uplots; without that list there are no marks, but all curves.
 // uPlot shares cursor and zoom among charts with the same sync key that are in view; one that comes into view later is
 // given the zoom here, and so are the load maps.
@@ -156,5 +156,21 @@ if (!window.trackridePlots) {
       window.trackridePlots();
     }
   });
-  setInterval(window.trackridePlots, 250);
+
+  let front = '';  // names of the tabs that are seen
+  const tell = () => {  // in the hidden box beside the page's keys, which is not there while that panel is put away
+    const box = document.querySelector('[data-trackride="page"] + div + div input');
+    if (!box || box.value === front) return;
+    Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value').set.call(box, front);  // past React's own
+    box.dispatchEvent(new Event('input', {bubbles: true}));
+  };
+  const tabs = new ResizeObserver(() => {  // a tab behind is 0 px wide
+    const seen = [...document.querySelectorAll('trackride-tab')].filter((tab) => tab.offsetWidth);
+    front = seen.map((tab) => tab.getAttribute('name')).join();
+    tell();
+  });
+  customElements.define('trackride-tab', class extends HTMLElement {
+    connectedCallback() { tabs.observe(this); }
+  });
+  setInterval(() => { window.trackridePlots(); tell(); }, 250);
 }

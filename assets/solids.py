@@ -7,9 +7,6 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
-import trimesh
-from scipy.spatial import ConvexHull
-from trimesh.exchange.gltf import export_glb
 
 Rgb = tuple[int, int, int]  # sRGB, 0…255
 Rgba = tuple[int, int, int, int]  # sRGB and opacity, 0…255
@@ -106,6 +103,9 @@ def glb(parts: Iterable[Part], *, glow: float = 0.0) -> bytes:
 
     glow: 0 for parts that stand in the scene's light; else they shine by themselves, so many times their colours.
     """
+    import trimesh
+    from trimesh.exchange.gltf import export_glb
+
     vertices, faces, amounts = _merged(parts)
     brightness = 1.0
     material: dict[str, Any] = {}
@@ -136,6 +136,11 @@ def glb(parts: Iterable[Part], *, glow: float = 0.0) -> bytes:
     return data
 
 
+def warm_up() -> None:
+    """Load the libraries that meshes are made with: half a second, for which no page is to wait."""
+    glb([convex([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], (0, 0, 0, 255))])
+
+
 def light(colours: np.ndarray) -> np.ndarray:
     """sRGB 0…255 (..., 3) as amounts of light 0…1: the renderer reads vertex colours and batched colours so."""
     encoded = np.asarray(colours, dtype=float) / 255
@@ -156,6 +161,8 @@ def _merged(parts: Iterable[Part]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def _outlines(points: np.ndarray) -> list[np.ndarray]:
     """Corners (K, 3) of every flat face of the points' convex hull, counter-clockwise seen from outside."""
+    from scipy.spatial import ConvexHull
+
     solid = ConvexHull(points)
     normals, face_of = np.unique(solid.equations.round(6), axis=0, return_inverse=True)
     outlines = []

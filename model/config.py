@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from importlib import resources
+from operator import attrgetter
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -34,6 +35,7 @@ __all__ = [
 
 SIZE_LIMIT = 8_000_000  # bytes of a configuration file; 10 km of profile take 5 million
 _PRESETS = resources.files("configs")
+_FIELDS = {key: attrgetter(key) for key in PARAMETER}
 
 
 def _field(key: str) -> Any:
@@ -247,10 +249,7 @@ class Config(Section):
         """The value at a dotted path. Raises KeyError for a key that this configuration does not have."""
         if path not in PARAMETER or not PARAMETER[path].applies_to(self.road.type):
             raise KeyError(path)
-        found: Any = self
-        for name in path.split("."):
-            found = getattr(found, name)
-        return found
+        return _FIELDS[path](self)
 
     def parameter(self, path: str) -> Parameter:
         """The table's row of a key, in the unit that its basis (wheel or torsion) gives it here. Raises KeyError."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from model.road import Road
 from model.vehicle import System
@@ -75,6 +74,8 @@ def stop_torque(system: System, u: float, u_dot: float) -> float:
 
 def nearest_point(road: Road, centre: np.ndarray) -> np.ndarray:
     """The point of the profile nearest to a wheel's centre, by brute force: (2,)."""
+    from scipy.optimize import brentq  # which nobody else waits for
+
     X, Y = centre
     reach = 1.5 * road.radius
     s = np.union1d(X + np.linspace(-reach, reach, 1501), _corners(road, X, reach))

@@ -132,8 +132,12 @@ class Tab:
         height: int = 900,
         storage: dict[str, str] | None = None,
         mute: bool = False,
+        stands: bool = True,
     ) -> None:
-        """storage: what the browser has kept from earlier visits; mute: it does not tell."""
+        """storage: what the browser has kept from earlier visits; mute: it does not tell.
+
+        stands: the page says, as soon as it can, that its panels stand with the loads in front.
+        """
         self._socket = connect(
             explorer.address.replace("http", "ws"),
             subprotocols=[f"viser-v{viser.__version__}"],  # type: ignore[list-item]
@@ -143,7 +147,7 @@ class Tab:
         self.widgets: dict[str, dict[str, Any]] = {}  # uuid -> type, value and props
         self.notifications: list[dict[str, Any]] = []
         self.storage: dict[str, str] = {} if storage is None else storage
-        self._mute = mute
+        self._mute, self._stands = mute, stands
         self.messages: list[dict[str, Any]] = []
         self._thread = threading.Thread(target=self._listen, daemon=True)
         self._thread.start()
@@ -246,6 +250,8 @@ class Tab:
             self.widgets.pop(message["uuid"], None)
         elif kind.startswith("Gui") and "props" in message:
             self.widgets[message["uuid"]] = message
+            if self._stands and message["props"].get("label") == "Tabs in front":
+                self.send("GuiUpdateMessage", uuid=message["uuid"], updates={"value": "Loads"})
         elif kind == "LocalStorageSetItemMessage":
             self.storage[message["key"]] = message["value"]
         elif kind == "LocalStorageGetItemRequestMessage" and not self._mute:

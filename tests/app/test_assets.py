@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from io import BytesIO
 from typing import Any
 
 import numpy as np
@@ -121,6 +122,15 @@ def read_glb(data: bytes) -> tuple[dict[str, Any], np.ndarray]:
     accessor = tree["accessors"][tree["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"]]
     start = 28 + length + tree["bufferViews"][accessor["bufferView"]]["byteOffset"]
     return tree, np.frombuffer(data, np.uint8, 4 * accessor["count"], start).reshape(-1, 4)
+
+
+def test_a_glb_can_be_read_by_others() -> None:
+    parts = [box((0, 0, 0), (1, 2, 3), GREY), lathe([(0.0, 2.0), (1.0, 3.0)], (200, 10, 10, 255), 7)]
+    [mesh] = trimesh.load(BytesIO(glb(parts)), file_type="glb", process=False).geometry.values()
+    vertices, faces = joined(parts)
+    np.testing.assert_allclose(mesh.vertices, vertices, atol=1e-6)
+    np.testing.assert_array_equal(mesh.faces, faces)
+    assert len(np.unique(mesh.visual.vertex_attributes["color"], axis=0)) == 2
 
 
 def test_glb_carries_colours_as_light() -> None:

@@ -63,7 +63,9 @@ def server() -> Iterator[viser.ViserServer]:
 
 def panel(server: viser.ViserServer, config: Config = PAPER) -> ControlPanel:
     server.gui.reset()
-    return ControlPanel(server.gui, {"paper": config}, "paper", config, Asked())
+    controls = ControlPanel(server.gui, {"paper": config}, "paper", config, Asked())
+    controls.fill()
+    return controls
 
 
 @pytest.mark.parametrize("parameter", NUMBERS, ids=lambda parameter: parameter.key)

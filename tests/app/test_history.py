@@ -18,6 +18,10 @@ def faster(speed: float) -> Wish:
     return Wish(PAPER).changed(SPEED, speed)
 
 
+def named(wish: Wish) -> str:
+    return run_name(wish.base, wish.config())
+
+
 def test_each_rested_change_is_a_step_back_and_forth():
     changes = Changes(Wish(PAPER))
     changes.note(faster(20), 10.0)
@@ -81,17 +85,17 @@ def test_steps_are_bounded(monkeypatch: pytest.MonkeyPatch):
 
 
 def test_a_run_is_named_after_its_changes_in_shown_units():
-    assert run_name(Wish(PAPER)) == PAPER.name
-    assert run_name(faster(22)) == "Speed 15 → 22 km/h"
-    assert run_name(faster(15)) == PAPER.name  # as it was
+    assert named(Wish(PAPER)) == PAPER.name
+    assert named(faster(22)) == "Speed 15 → 22 km/h"
+    assert named(faster(15)) == PAPER.name  # as it was
     both = Wish(PAPER).changed("vehicle.road_suspension.damping", 2366.0).changed(AMPLITUDE, 0.15)
-    assert run_name(both) == "Road damping 4.732 → 2.366 kN s/m, Amplitude 100 → 150 mm"
+    assert named(both) == "Road damping 4.732 → 2.366 kN s/m, Amplitude 100 → 150 mm"
     many = both.changed(SPEED, 22).changed("contact.friction", 0.5)
-    assert run_name(many).endswith(" and 2 more")
-    assert run_name(Wish(PAPER).changed("vehicle.imaginary_wheels.enabled", False)) == "Imaginary wheels on → off"
-    flat = run_name(Wish(PAPER).changed("road.type", "flat"))
+    assert named(many).endswith(" and 2 more")
+    assert named(Wish(PAPER).changed("vehicle.imaginary_wheels.enabled", False)) == "Imaginary wheels on → off"
+    flat = named(Wish(PAPER).changed("road.type", "flat"))
     assert flat == "Road type sine → flat"
-    assert "automatic → 3" in run_name(Wish(PAPER).changed("road.start", 3.0))
+    assert "automatic → 3" in named(Wish(PAPER).changed("road.start", 3.0))
 
 
 def test_runs_are_told_apart_and_kept_once():
@@ -158,5 +162,5 @@ def test_what_was_kept_at_an_earlier_visit_is_kept_once_with_name_and_colour():
 def test_rates_of_torsion_bars_are_told_in_their_own_unit():
     stiffness = "vehicle.road_suspension.stiffness"
     bars = PAPER.replace({"vehicle.road_suspension.basis": "torsion", stiffness: 9000})
-    assert run_name(Wish(bars).changed(stiffness, 8000)) == "Road stiffness 9 → 8 kN m/rad"
+    assert named(Wish(bars).changed(stiffness, 8000)) == "Road stiffness 9 → 8 kN m/rad"
     assert "Road stiffness 75.53 kN/m → 9 kN m/rad" in differences(PAPER, bars)

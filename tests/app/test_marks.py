@@ -171,3 +171,23 @@ def test_a_click_picks_the_wheel_on_either_side_and_no_idler(tab: Tab, row: int,
     clicked = tab.scene._handle_from_node_name["/vehicle/road_wheels"]._impl.click_cb[0].callback
     asyncio.run(clicked(SimpleNamespace(instance_index=row)))  # type: ignore[arg-type]
     assert picked == ([] if wheel is None else [wheel])
+
+
+def test_rings_are_sent_while_there_are_any_and_once_more_to_be_gone(tab: Tab, scene: Scene) -> None:
+    stage = Stage(tab)  # type: ignore[arg-type]
+    stage.show(scene.trajectory)
+    time, wheel = flight(scene)
+
+    def sizes() -> list[np.ndarray]:
+        return [m.updates["batched_scales"] for m in tab.sent() if m.name == "/marks/rings" and hasattr(m, "updates")]
+
+    stage.draw(0.0)  # on the ground
+    tab.sent()
+    stage.draw(0.01)
+    assert not sizes()
+    stage.draw(time)
+    assert sizes()[-1][wheel] > 0.0
+    stage.draw(0.0)
+    assert not sizes()[-1].any()
+    stage.draw(0.01)
+    assert not sizes()

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+import pytest
+
+from app import plot_panel
 from tests.app.conftest import Tab, wait_for
 
 
@@ -20,6 +24,24 @@ def test_the_tabs_that_cost_more_follow_once_the_run_stays(explore: Any, open_ta
     wait_for(lambda: tab.shows_run(2))
     wait_for(lambda: tab.html("trackride-map") != before, "another load map")
     wait_for(lambda: "1.19 Hz" in tab.html("trackride-modes"), "30 km/h on waves of 7 m")
+
+
+def test_only_what_is_in_front_keeps_up_with_a_drag(
+    explore: Any, open_tab: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tab: Tab = open_tab(explore())
+    wait_for(lambda: "Energy unaccounted for" in tab.html("Does the run obey"), "all tabs")
+    monkeypatch.setattr(plot_panel, "CALM", 1e9)
+    acceleration, page = tab.charts()[3]["data"][1], tab.html("Does the run obey")
+    tab.use("Speed, km/h", 30)
+    wait_for(lambda: tab.shows_run(2) and np.isclose(tab.charts()[0]["data"][1][0], 30), "its loads")
+    assert np.array_equal(tab.charts()[3]["data"][1], acceleration)
+    tab.use("Tabs in front", "Ride,Trust")
+    wait_for(lambda: np.isclose(tab.charts()[3]["data"][1].max(), 30), "its acceleration")
+    wait_for(lambda: tab.html("Does the run obey") != page, "what it obeys")
+    tab.use("Speed, km/h", 20)
+    wait_for(lambda: tab.shows_run(3) and np.isclose(tab.charts()[3]["data"][1].max(), 20), "the next run's")
+    assert np.isclose(tab.charts()[0]["data"][1][0], 30)  # behind now
 
 
 def test_a_wheel_singled_out_recolours_the_curves_and_keeps_the_charts(explore: Any, open_tab: Any) -> None:

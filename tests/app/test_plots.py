@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from app.colours import wheel_palette
-from app.plots import BUCKETS, Plot, load_plots, thin
+from app.plots import Plot, load_plots
 from app.ride_plots import ride_plots
+from app.thinning import BUCKETS, thin
 from model.config import load_config
 from model.trajectory import Trajectory
 from tests.app.conftest import make_run

@@ -99,10 +99,14 @@ def test_what_means_nothing_is_refused_by_its_place(text: str, path: str) -> Non
     assert path in {fault.path for fault in error.value.faults}
 
 
+def named(wish: Wish) -> str:
+    return run_name(wish.base, wish.config())
+
+
 def test_runs_on_new_roads_have_short_names() -> None:
     wish = Wish(PAPER, {"road.type": "profile", "road.points": "5 0, 6 0.1, 9 0"})
-    assert run_name(wish) == "Road type sine → profile, Profile automatic → 3 points, 4 m long, 0.1 m high"
-    assert run_name(Wish(PAPER, with_part(PAPER, "step"))).endswith("Parts automatic → sine + step")
+    assert named(wish) == "Road type sine → profile, Profile automatic → 3 points, 4 m long, 0.1 m high"
+    assert named(Wish(PAPER, with_part(PAPER, "step"))).endswith("Parts automatic → sine + step")
 
 
 # Profiles

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.scene import SIDES, Poses, build_scene, track_path
+from app.scene import SIDES, Poses, build_scene
+from app.track import track_path
 from model import Trajectory, load_config, simulate
 
 

@@ -104,9 +104,11 @@ def test_an_instant_takes_few_messages_and_makes_no_nodes(tab: Tab, paper: Traje
 def test_another_stiffness_makes_no_nodes_and_sends_no_road(tab: Tab, paper: Trajectory) -> None:
     stage = Stage(tab)  # type: ignore[arg-type]
     stage.show(paper)
+    stage.draw(0.0)
     handles = dict(tab.scene._handle_from_node_name)
     tab.sent()
     stage.show(run(**{"vehicle.road_suspension.stiffness": 60000}))
+    stage.draw(0.0)
     assert dict(tab.scene._handle_from_node_name) == handles
     assert not any(getattr(message, "name", "").startswith("/road/") for message in tab.sent())
 
@@ -114,9 +116,11 @@ def test_another_stiffness_makes_no_nodes_and_sends_no_road(tab: Tab, paper: Tra
 def test_another_amplitude_sends_the_road_only(tab: Tab, paper: Trajectory) -> None:
     stage = Stage(tab)  # type: ignore[arg-type]
     stage.show(paper)
+    stage.draw(0.0)
     handles = dict(tab.scene._handle_from_node_name)
     tab.sent()
     stage.show(run(**{"road.amplitude": 0.2}))
+    stage.draw(0.0)
     assert dict(tab.scene._handle_from_node_name) == handles
     assert sum(getattr(message, "name", "").startswith("/road/") for message in tab.sent()) == 2
 

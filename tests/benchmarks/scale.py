@@ -12,7 +12,7 @@ from time import perf_counter
 
 from model import load_config, simulate, simulate_many
 from tests.benchmarks.model import cores
-from tests.browser.driver import Explorer, chromium, running_explorer
+from tests.browser.driver import Explorer, chromium, running, running_explorer
 
 RUNS = 200
 WHEELS = (2, 4, 6, 10, 20)
@@ -52,6 +52,7 @@ def _wheels() -> dict[str, tuple[float, str]]:
 
 def _start() -> dict[str, tuple[float, str]]:
     figures = {"import model": (_seconds_of("import model"), "s"), "trackride --help": (_seconds_of(HELP), "s")}
+    figures["an empty viser page"] = (median(_empty_page() for _ in range(3)), "s")
     for name, environment in (("warm", {}), ("nothing compiled yet", {"NUMBA_CACHE_DIR": tempfile.mkdtemp()})):
         before = dict(os.environ)
         os.environ.update(environment)
@@ -60,6 +61,7 @@ def _start() -> dict[str, tuple[float, str]]:
                 page = browser.new_page(viewport={"width": 1280, "height": 720})
                 began = perf_counter()
                 with running_explorer() as address:
+                    figures[f"explorer: listens, {name}"] = (perf_counter() - began, "s")
                     page.goto(f"{address}/?fixedDpr=0.5")
                     page.locator(".trackride-status").wait_for(timeout=60_000)
                     figures[f"explorer: interface, {name}"] = (perf_counter() - began, "s")
@@ -71,6 +73,24 @@ def _start() -> dict[str, tuple[float, str]]:
     return figures
 
 
+def _empty_page() -> float:
+    """Seconds from starting viser, with nothing but a line of text to show, until that line is seen."""
+    with chromium("--disable-gpu-compositing") as browser:
+        page = browser.new_page(viewport={"width": 1280, "height": 720})
+        began = perf_counter()
+        with running([sys.executable, "-c", EMPTY]) as address:
+            page.goto(f"{address}/?fixedDpr=0.5")
+            page.locator(".empty").wait_for(timeout=60_000)
+            return perf_counter() - began
+
+
+EMPTY = """
+import viser
+server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+server.gui.add_html('<p class="empty">Empty</p>')
+print(f"http://127.0.0.1:{server.get_port()}", flush=True)
+server.sleep_forever()
+"""
 HELP = "import sys; sys.argv = ['trackride', '--help']; from app.cli import main; main()"
 
 

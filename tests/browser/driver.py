@@ -7,7 +7,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from time import monotonic
 from typing import TypeVar
 
@@ -27,14 +27,18 @@ DOWNLOAD = 120_000  # ms: … but what the browser has to draw a large picture f
 expect.set_options(timeout=SOON)
 
 
-@contextmanager
-def running_explorer(*arguments: str) -> Iterator[str]:
+def running_explorer(*arguments: str) -> AbstractContextManager[str]:
     """The address of an explorer in a process of its own."""
-    command = [sys.executable, "-m", "app", "explore", "--no-browser", "--port", "0", *arguments]
+    return running([sys.executable, "-m", "app", "explore", "--no-browser", "--port", "0", *arguments])
+
+
+@contextmanager
+def running(command: list[str]) -> Iterator[str]:
+    """The address that a server in a process of its own prints among its first lines."""
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
-        found = re.search(r"http://\S+", process.stdout.readline())
-        assert found, "the explorer did not say where it can be opened"
+        found = next(filter(None, (re.search(r"http://\S+", line) for line in process.stdout)), None)
+        assert found, "the server did not say where it can be opened"
         try:
             yield found.group()
         finally:

@@ -38,6 +38,14 @@ def page(browser, address) -> Page:
     context.close()
 
 
+def test_the_page_tells_which_tab_is_in_front(page):
+    for tab in ("Ride", "Load map", "Loads"):
+        show(page, tab)
+        page.wait_for_function(
+            "tab => document.querySelector('[data-trackride=page] + div + div input').value === tab", arg=tab
+        )
+
+
 def test_zoom_in_one_plot_is_the_zoom_of_all_over_tabs_and_runs(page):
     explorer = Explorer(page)
     show(page, "Loads")

@@ -34,7 +34,10 @@ LEVEL = {module: level for level, row in enumerate(ROWS) for module in row}
 # Libraries with a place of their own: the only modules that may import them.
 PLACES = {
     "numba": {"model.compiled"},
-    "model.compiled": {"model.road_search", "model.road_table", "model.contact", "model.kernel", "model.steppers"},
+    "model.compiled": {
+        *("model.road_search", "model.road_table", "model.contact", "model.kernel", "model.steppers"),
+        *("app.thinning", "app.track"),
+    },
     "threading": {"app.session", "app.runner", "app.errands"},
     "queue": set(),
     "_thread": set(),
@@ -47,6 +50,8 @@ NOT_IN_MODEL = {"app", "assets", "viser", "threading", "asyncio", "trimesh", "ma
 PURE = (
     "app.scene",
     "app.plots",
+    "app.thinning",
+    "app.track",
     "app.playback",
     "app.colours",
     "app.ride_plots",
@@ -58,6 +63,7 @@ PURE = (
     "app.load_colours",
     "app.trust",
     "app.markup",
+    "app.status",
     "app.driving",
 )  # no viser, so that they are tested without a browser
 

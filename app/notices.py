@@ -1,0 +1,49 @@
+"""Notifications of one tab, one of each kind: a newer one takes the older one's place."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import viser
+
+NOTICE_TIME = 10.0  # s that a notification stays
+PROGRESS = "progress"
+
+
+class Notices:
+    """What the user is told beside the panels."""
+
+    def __init__(self, client: viser.ClientHandle) -> None:
+        self._client = client
+        self._shown: dict[str, viser.NotificationHandle] = {}  # by kind
+
+    def __len__(self) -> int:
+        return len(self._shown)
+
+    def show(self, kind: str, title: str, body: str, color: Any, stays: bool = False) -> None:
+        """Tell something, for a while or until it is forgotten."""
+        notice = self._shown.get(kind)
+        if notice is not None and (notice.title, notice.body) == (title, body) and stays:
+            return
+        self.forget(kind)
+        self._shown[kind] = self._client.add_notification(
+            title, body, color=color, auto_close_seconds=None if stays else NOTICE_TIME
+        )
+
+    def forget(self, kind: str) -> None:
+        """Take back what was told last of a kind."""
+        notice = self._shown.pop(kind, None)
+        if notice is not None:
+            notice.remove()
+
+    def progress(self, doing: str) -> None:
+        """Say what is being made; empty: nothing."""
+        notice = self._shown.get(PROGRESS)
+        if not doing:
+            self.forget(PROGRESS)
+        elif notice is not None:
+            notice.body = doing
+        else:
+            self._shown[PROGRESS] = self._client.add_notification(
+                "One moment", doing, loading=True, with_close_button=False, auto_close_seconds=None
+            )

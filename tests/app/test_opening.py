@@ -1,0 +1,41 @@
+"""A tab from its first message until all of it is there."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import app.window
+from tests.app.conftest import FakeScene, Tab, wait_for
+
+
+def test_what_is_not_seen_at_first_waits_until_the_page_stands(
+    explore: Any, open_tab: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(app.window, "LAID_OUT_WITHIN", 1e9)
+    explorer = explore()
+    tab: Tab = open_tab(explorer, stands=False)
+    wait_for(lambda: tab.shows_run(1) and tab.charts(), "the curves")
+    scene: FakeScene = explorer.sessions[0]._window.scene
+
+    def labels() -> set[str]:
+        return {widget["props"].get("label", "") for widget in tuple(tab.widgets.values())}
+
+    assert {"Speed, km/h", "Preset", "Export", "Vehicle"} <= labels()
+    assert "Hull mass, kg" not in labels()
+    assert not scene.runs
+    tab.use("Tabs in front", "Loads")
+    wait_for(lambda: scene.runs and scene.times, "the vehicle")
+    tab.find("Hull mass, kg")
+    tab.press("Play or pause")
+
+
+def test_a_page_that_does_not_say_that_it_stands_is_taken_to(
+    explore: Any, open_tab: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(app.window, "LAID_OUT_WITHIN", 0.2)
+    explorer = explore()
+    tab: Tab = open_tab(explorer, stands=False)
+    wait_for(lambda: explorer.sessions and explorer.sessions[0]._window.scene.times, "the vehicle")
+    tab.find("Hull mass, kg")
