@@ -57,12 +57,12 @@ class ControlPanel:
         self.show(config)
 
     def fill(self) -> None:
-        """Fill the folders, which are closed at first."""
+        """Fill the folders, which are closed at first. What stands already may have been moved since: it is left."""
         for parameter in BOXED:
-            control, value = KINDS.get(parameter.kind, Control), _value(self._shown, parameter)
+            make, value = KINDS.get(parameter.kind, Control), _value(self._shown, parameter)
             with self._folders[parameter.group]:
-                self._controls[parameter.key] = control(self._gui, parameter, value, self._wishes)
-        self.show(self._shown)
+                self._controls[parameter.key] = control = make(self._gui, parameter, value, self._wishes)
+            _say(control, self._shown)
 
     def offer(self, presets: Mapping[str, Config], chosen: str) -> None:
         """Offer these presets, `chosen` as the one that is used."""
@@ -89,17 +89,22 @@ class ControlPanel:
         """
         before, self._shown = self._shown, config
         others = {name for name, section in SECTIONS.items() if section(before) == section(config)} if touched else ()
-        with_track = config.vehicle.imaginary_wheels.enabled
-        if before.vehicle.imaginary_wheels.enabled != with_track:
+        if before.vehicle.imaginary_wheels.enabled != config.vehicle.imaginary_wheels.enabled:
             others = ()
         for key, control in self._controls.items():
-            if SECTION_OF[key] in others:
-                continue
-            applies = control.parameter.applies_to(config.road.type)
-            control.describe(config.parameter(key))
-            if applies:
-                (control.widen if key in touched else control.show)(config.value(key))
-            control.enable(applies and (with_track or not key.startswith(IMAGINARY) or key == IMAGINARY_SWITCH))
+            if SECTION_OF[key] not in others:
+                _say(control, config, touched=key in touched)
+
+
+def _say(control: Control, config: Config, *, touched: bool = False) -> None:
+    """What the configuration says of a control's parameter; its value not where the user may still move it."""
+    key = control.parameter.key
+    applies = control.parameter.applies_to(config.road.type)
+    control.describe(config.parameter(key))
+    if applies:
+        (control.widen if touched else control.show)(config.value(key))
+    with_track = config.vehicle.imaginary_wheels.enabled
+    control.enable(applies and (with_track or not key.startswith(IMAGINARY) or key == IMAGINARY_SWITCH))
 
 
 def _value(config: Config, parameter: Parameter) -> Any:

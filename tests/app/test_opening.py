@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import threading
 from typing import Any
 
 import pytest
 
 import app.window
-from tests.app.conftest import FakeScene, Tab, wait_for
+from model.config import Config
+from model.trajectory import Trajectory
+from tests.app.conftest import PATIENCE, FakeScene, Tab, make_run, wait_for
 
 
 def test_what_is_not_seen_at_first_waits_until_the_page_stands(
@@ -39,3 +42,25 @@ def test_a_page_that_does_not_say_that_it_stands_is_taken_to(
     tab: Tab = open_tab(explorer, stands=False)
     wait_for(lambda: explorer.sessions and explorer.sessions[0]._window.scene.times, "the vehicle")
     tab.find("Hull mass, kg")
+
+
+def test_a_slider_moved_before_the_page_stands_is_not_put_back(
+    explore: Any, open_tab: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(app.window, "LAID_OUT_WITHIN", 1e9)
+    filled = threading.Event()
+
+    def run(config: Config, **_: Any) -> Trajectory:
+        if config.drive.speed_kmh == 60:
+            filled.wait(PATIENCE)
+        return make_run(config)
+
+    tab: Tab = open_tab(explore(run=run), stands=False)
+    wait_for(lambda: tab.shows_run(1))
+    tab.use("Speed, km/h", 60)
+    tab.use("Tabs in front", "Loads")
+    tab.find("Hull mass, kg")
+    filled.set()
+    wait_for(lambda: tab.shows_run(2))
+    tab.use("Speed, km/h", 15)  # which would be nothing new, had it been put back
+    wait_for(lambda: tab.shows_run(3))
