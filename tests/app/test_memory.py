@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import pytest
@@ -30,6 +31,7 @@ def kept_runs() -> tuple[Kept, ...]:
     return tuple(runs)
 
 
+@cache
 def text() -> str:
     runs = kept_runs()
     return state_text(PAPER, WISH, [OTHER], runs, runs[1])
