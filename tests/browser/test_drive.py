@@ -21,6 +21,11 @@ def seconds(explorer: Explorer) -> int:
     return 60 * int(found.group(1)) + int(found.group(2)) if found else 0
 
 
+def last_row(explorer: Explorer) -> float:
+    """Where the player's last row stands, px: it stays there."""
+    return explorer.page.locator("label", has_text="Time scale").evaluate("label => label.getBoundingClientRect().y")
+
+
 def wait_until(explorer: Explorer, condition: Callable[[], bool]) -> None:
     end = monotonic() + SOON / 1000
     while not condition():
@@ -40,8 +45,10 @@ def set_hidden(explorer: Explorer, hidden: bool) -> None:
 def test_the_drive_goes_on_follows_sliders_and_rests_in_the_background(at_rest: Explorer) -> None:
     page, run = at_rest.page, at_rest.run_number()
     assert not page.get_by_text("In view").is_visible()
+    height = last_row(at_rest)
     at_rest.button("○ Drive").click()
     wait_until(at_rest, lambda: seconds(at_rest) >= 2)
+    wait_until(at_rest, lambda: abs(last_row(at_rest) - height) < 1)
     curves = at_rest.curves()
     before = seconds(at_rest)
     at_rest.press("Speed", "ArrowRight")
