@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from app.history import RUN_COLOURS, RUNS, Kept, first_wish, plain_name, run_name
 from app.runner import Wish
-from model.config import Config, ConfigError
+from model.config import Config, ConfigError, part_values
 
 PRESETS = 30  # of the user's own, at most
 LONGEST = 1_000_000  # characters of a text that is looked at: more than all presets and runs take
@@ -40,7 +40,8 @@ def state_text(
             "presets": [preset.values() for preset in presets],
             "runs": [_run_values(kept) for kept in runs],
             "baseline": None if baseline is None else _run_values(baseline),
-        }
+        },
+        default=part_values,  # of the roads that a sum is made of
     )
 
 

@@ -46,7 +46,7 @@ def _row(name: str, frequency: str, damping: str, meaning: str) -> str:
 def moving(mode: Mode) -> str:
     """What moves in a mode, by its part in the kinetic energy."""
     told = [(WORDS.get(name, name[0].lower() + name[1:]), share) for name, share in mode.shares]
-    return ", ".join(f"{words} {100 * share:.0f} %" for words, share in told if share >= WORTH_TELLING)
+    return ", ".join(f"{words} {100 * share:.0f}\N{NO-BREAK SPACE}%" for words, share in told if share >= WORTH_TELLING)
 
 
 def _creeping(creeping: Iterable[Creep]) -> str:

@@ -17,6 +17,9 @@ ANEW, GO = "|◀ Restart", "▶ Drive on"
 RUN, DRIVE = "Run", "Drive"
 MARKS = {True: "●", False: "○"}  # before the mode that is on, and the other
 
+# As tall as the box of text that takes its place in a drive: the rows below stay where they are.
+AS_TALL = '<style>[id="TIME"] { min-height: 1.62rem; }</style>'
+
 
 class Player(Protocol):
     """What the panel asks of the session."""
@@ -73,6 +76,7 @@ class PlaybackPanel:
                 hint="How fast time passes; 1× is real time. A larger one shows more in less time, up to what this "
                 "machine can compute.",
             )
+            gui.add_html(AS_TALL.replace("TIME", self._time._impl.uuid))
         self._time.on_update(by_user(lambda event: player.scrub(event.target.value), player.fail))
         speed.on_update(by_user(lambda event: player.set_speed(SPEEDS[event.target.value]), player.fail))
         acts = {

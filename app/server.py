@@ -80,9 +80,10 @@ class Explorer:
             self.server.stop()
 
     def _close(self, client_id: int) -> None:
-        session = self._sessions.pop(client_id, None)
+        session = self._sessions.get(client_id)
         if session is not None:
             session.close()
+            self._sessions.pop(client_id, None)  # only now: stopping waits for a tab that is just being closed
 
 
 class _Server(viser.ViserServer):

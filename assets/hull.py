@@ -1,4 +1,4 @@
-"""The hull: an armoured carrier of the BMP class, stretched to the wheels it stands on.
+"""The hull: an armoured carrier of the BMP class, or a robot's plain body, stretched to the wheels it stands on.
 
 In the design pose: x forward, y to the left, z above flat ground; m, at the size of the paper's vehicle.
 """
@@ -21,6 +21,8 @@ GLASS: Rgba = (46, 60, 72, 255)
 LAMP: Rgba = (250, 240, 204, 255)
 TAIL_LAMP: Rgba = (176, 54, 44, 255)
 ROOF, ROOF_HALF_WIDTH = 1.56, 1.20
+LOW_ROOF = 1.26  # of a light vehicle
+GLACIS, SHORT_GLACIS = 1.30, 0.40  # m from the nose's tip back to the roof
 TURRET = (0.82, 0.04), (0.50, 0.385)  # radius and height over the roof, of the cone's foot and top
 TURRET_CORNERS = 32  # of its circles among the edges
 GUN = 0.84, 2.52  # m before the turret's axis, from the mantlet to the muzzle
@@ -32,7 +34,8 @@ Point = tuple[float, float, float]
 def hull(layout: Layout) -> list[Part]:
     """Everything that is fixed to the chassis, about the point of the ground under its centre of mass."""
     unit = layout.at_scale_one()
-    parts = [*_body(unit), *_fenders(unit), *_turret(unit), *_fittings(unit), *_rollers(unit)]
+    parts = [*_body(unit), *_fenders(unit), *_lamps(unit), *_rollers(unit)]
+    parts += _lid(unit) if layout.light else [*_turret(unit), *_fittings(unit)]
     return [part.scaled(layout.scale) for part in parts]
 
 
@@ -48,14 +51,19 @@ def hull_edges(layout: Layout) -> list[np.ndarray]:
     side = np.array([*upper, upper[0], chin])
     across = [np.array([corner, corner]) for corner in (*upper, chin)]
     lines = [side, side * (1, -1, 1), *(bar * np.array([(1, 1, 1), (1, -1, 1)]) for bar in across)]
+    if not layout.light:
+        lines += _turret_edges(unit)
+    return [layout.scale * line for line in lines]
+
+
+def _turret_edges(layout: Layout) -> list[np.ndarray]:
     around = 2 * np.pi * np.arange(TURRET_CORNERS + 1) / TURRET_CORNERS
     circle = np.column_stack([np.cos(around), np.sin(around), np.zeros(len(around))])
     foot, top = (radius * circle + (0.0, 0.0, z) for radius, z in TURRET)
     height = np.array([0.0, 0.0, GUN_HEIGHT + 0.05])  # along its upper edge
     turret = [foot, top, *np.stack([foot, top], axis=1)[: -1 : TURRET_CORNERS // 8]]
     turret += [np.array([(x, 0.0, GUN_RISE * x) for x in GUN]) + height]
-    lines += [line + _turret_foot(unit) for line in turret]
-    return [layout.scale * line for line in lines]
+    return [line + _turret_foot(layout) for line in turret]
 
 
 def _nose(layout: Layout) -> tuple[Point, Point]:
@@ -68,12 +76,13 @@ def _upper(layout: Layout) -> list[Point]:
     """Corners of the body above the fenders, from the tip up and back."""
     nose, tail, deck = layout.sprocket.x, layout.idler.x, layout.fender + 0.02
     wide, narrow = layout.half_width - 0.08, ROOF_HALF_WIDTH
+    roof, glacis = (LOW_ROOF, SHORT_GLACIS) if layout.light else (ROOF, GLACIS)
     return [
         _nose(layout)[0],
         (nose + 0.30, wide, deck),
         (nose + 0.24, wide - 0.05, deck + 0.10),
-        (nose - 1.30, narrow, ROOF),
-        (tail - 0.24, narrow, ROOF),
+        (nose - glacis, narrow, roof),
+        (tail - 0.24, narrow, roof),
         (tail - 0.36, wide, deck),
     ]
 
@@ -143,10 +152,24 @@ def _turret(layout: Layout) -> list[Part]:
     return [part.moved(*_turret_foot(layout)) for part in parts]
 
 
+def _lamps(layout: Layout) -> list[Part]:
+    nose, tail, deck = layout.sprocket.x, layout.idler.x, layout.fender + 0.02
+    lamp = lengthwise(lathe([(0.0, -0.06), (0.075, -0.06), (0.075, 0.06)], PAINT_DARK, 14))
+    lens = lengthwise(lathe([(0.075, 0.055), (0.05, 0.075), (0.0, 0.08)], LAMP, 14))
+    ahead = [part.moved(nose + 0.12, 1.06, deck + 0.20) for part in (lamp, lens)]
+    return both_sides([*ahead, box((tail - 0.37, 1.25, deck + 0.10), (0.05, 0.14, 0.07), TAIL_LAMP)])
+
+
+def _lid(layout: Layout) -> list[Part]:
+    """What closes a light vehicle's body: a plate on its roof."""
+    front, rear = layout.sprocket.x - SHORT_GLACIS - 0.15, layout.idler.x - 0.10
+    return [box(((front + rear) / 2, 0.0, LOW_ROOF + 0.01), (front - rear, 1.7, 0.05), PAINT_LIGHT)]
+
+
 def _fittings(layout: Layout) -> list[Part]:
-    """Lamps, hatches, doors, vision blocks, splash boards, stowage, exhaust and tow hooks."""
+    """Hatches, doors, vision blocks, splash boards, stowage, exhaust and tow hooks."""
     nose, tail, middle, deck = layout.sprocket.x, layout.idler.x, layout.middle, layout.fender + 0.02
-    foot, top = np.array([nose + 0.24, deck + 0.10]), np.array([nose - 1.30, ROOF])
+    foot, top = np.array([nose + 0.24, deck + 0.10]), np.array([nose - GLACIS, ROOF])
     slope = float(np.arctan2(*(top - foot)[::-1])) - np.pi
 
     def on_glacis(along: float, y: float, size: Point, colour: Rgba) -> Part:
@@ -165,14 +188,9 @@ def _fittings(layout: Layout) -> list[Part]:
     def on_roof(x: float, y: float) -> Part:
         return box((x, y, ROOF + 0.012), (0.52, 0.52, 0.04), PAINT_LIGHT)
 
-    lamp = lengthwise(lathe([(0.0, -0.06), (0.075, -0.06), (0.075, 0.06)], PAINT_DARK, 14))
-    lens = lengthwise(lathe([(0.075, 0.055), (0.05, 0.075), (0.0, 0.08)], LAMP, 14))
     pairs = [
-        lamp.moved(nose + 0.12, 1.06, deck + 0.20),
-        lens.moved(nose + 0.12, 1.06, deck + 0.20),
         on_roof(tail + 0.25, 0.42),
         box((tail - 0.31, 0.34, deck + 0.26), (0.06, 0.62, 0.46), PAINT_LIGHT),
-        box((tail - 0.37, 1.25, deck + 0.10), (0.05, 0.14, 0.07), TAIL_LAMP),
         box((middle - 0.90, 1.44, deck + 0.09), (0.9, 0.14, 0.18), PAINT_LIGHT),
         box((middle + 0.35, 1.44, deck + 0.07), (1.1, 0.10, 0.12), PAINT_DARK),
         *(on_side(middle - 1.45 + 0.62 * k, 0.68, (0.15, 0.13, 0.05), PAINT_DARK) for k in range(4)),

@@ -14,6 +14,7 @@ import numpy as np
 from model.vehicle import System
 
 PAPER_RADIUS = 0.32  # m, of the wheels of the paper's vehicle
+LIGHT = 1000.0  # kg of one side's sprung mass, below which nobody would put a turret on a vehicle
 
 
 class Circle(NamedTuple):
@@ -30,6 +31,7 @@ class Layout:
     radius: float  # of road wheels and imaginary wheels, to the ground: the track's shoes included
     links: tuple[float, ...]  # lengths of the imaginary arms
     pivot: tuple[float, float]  # of a road arm, from its wheel's centre: forward, up
+    light: bool  # a robot: a plain body without turret
 
     @property
     def scale(self) -> float:
@@ -44,6 +46,7 @@ class Layout:
             self.radius / s,
             tuple(length / s for length in self.links),
             (self.pivot[0] / s, self.pivot[1] / s),
+            self.light,
         )
 
     @property
@@ -150,4 +153,5 @@ def layout_of(system: System) -> Layout:
         radius=system.r,
         links=tuple(links.tolist()),
         pivot=(2 * float(half_arm[0]), 2 * float(half_arm[1])),
+        light=bool(system.mass[system.chassis] < LIGHT),
     )

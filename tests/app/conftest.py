@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from typing import Any
 
 import msgspec
@@ -12,6 +13,7 @@ import numpy as np
 import pytest
 import viser
 import zstandard
+from websockets.exceptions import ConnectionClosedOK
 from websockets.sync.client import connect
 
 from app.server import Explorer
@@ -226,6 +228,10 @@ class Tab:
         self._thread.join()
 
     def _listen(self) -> None:
+        with suppress(ConnectionClosedOK):  # what is asked of a tab that has just been closed is not answered
+            self._take_in()
+
+    def _take_in(self) -> None:
         unpack = zstandard.ZstdDecompressor()
         for data in self._socket:
             assert isinstance(data, bytes)

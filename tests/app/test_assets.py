@@ -11,7 +11,7 @@ import pytest
 import trimesh
 
 from assets import running_gear
-from assets.hull import hull
+from assets.hull import hull, hull_edges
 from assets.layout import Layout, layout_of
 from assets.solids import box, convex, glb, joined, lathe, lengthwise, light, upright
 from assets.surroundings import TILES, RoadStrip, ground, shadow, shadow_faces, sky
@@ -33,6 +33,7 @@ VEHICLES = {
     "large wheels": {"vehicle.road_wheels.radius": 0.5, "vehicle.road_wheels.spacing": 1.1},
     "small wheels": {"vehicle.road_wheels.radius": 0.2, "vehicle.road_wheels.spacing": 0.5},
     "steep arms": {"vehicle.road_arms.angle_deg": 40},
+    "light": {"vehicle.chassis.mass": 900},
     "offset": {"vehicle.road_wheels.offset": 0.3},
     "uneven": {"vehicle.road_wheels.positions": [1.9, 1.0, 0.3, -0.5, -1.6]},
 }
@@ -51,6 +52,17 @@ def test_hull_spans_the_running_gear_and_keeps_clear_of_it(changes: dict[str, ob
         reach = np.hypot(vertices[:, 0] - x, vertices[:, 2] - vehicle.radius)
         assert reach[over_track].min() > vehicle.radius + SUSPENSION_TRAVEL * s
     assert (vertices[np.abs(vertices[:, 1]) < inner, 2] > 0.2 * s).all()
+
+
+def test_a_light_vehicle_has_no_turret() -> None:
+    """Nor edges of one, which its ghost would show."""
+    heavy, light = layout(**{"vehicle.chassis.mass": 1000}), layout(**{"vehicle.chassis.mass": 999})
+    for part in (joined(hull(light))[0], np.vstack(hull_edges(light))):
+        assert part[:, 2].max() < 1.4
+        assert part[:, 0].max() < light.sprocket.x + 1.0  # no gun
+    for part in (joined(hull(heavy))[0], np.vstack(hull_edges(heavy))):
+        assert part[:, 2].max() > 1.9
+    assert layout_of(build_system(load_config("robot"))).light
 
 
 @pytest.mark.parametrize("changes", VEHICLES.values(), ids=VEHICLES)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import app.desk
-from app.history import RUNS, Runs
+from app.history import Runs
 from app.memory import state_text
 from app.runner import Wish
 from model.config import Config, load_config
@@ -155,13 +155,17 @@ def test_runs_are_recalled_compared_renamed_and_deleted(tab: Tab) -> None:
     assert rows(tab) == [third]  # what the user has deleted does not come back by itself
 
 
-def test_runs_that_nobody_rested_on_are_not_kept_and_runs_are_bounded(tab: Tab) -> None:
-    for k in range(RUNS + 3):
+def test_runs_that_nobody_rested_on_are_not_kept_and_runs_are_bounded(
+    tab: Tab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bound = 5
+    monkeypatch.setattr(app.history, "RUNS", bound)
+    for k in range(bound + 3):
         tab.use(SPEED, 20 + k)
         wait_for(lambda k=k: tab.shows_run(k + 2))
         if k:
             wait_for(lambda k=k: f"Speed 15 → {20 + k} km/h" in rows(tab))
-    assert len(rows(tab)) == RUNS
+    assert len(rows(tab)) == bound
     assert "Paper vehicle" not in rows(tab)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import pytest
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 
 from app.history import RUN_COLOURS, RUNS, Kept, Runs
 from app.memory import LONGEST, PRESETS, State, state_from, state_text
+from app.road_parts import ADDED, with_part
 from app.runner import Wish
 from model.config import load_config
 from tests.app.conftest import make_run
@@ -29,6 +31,7 @@ def kept_runs() -> tuple[Kept, ...]:
     return tuple(runs)
 
 
+@cache
 def text() -> str:
     runs = kept_runs()
     return state_text(PAPER, WISH, [OTHER], runs, runs[1])
@@ -37,6 +40,14 @@ def text() -> str:
 def test_all_comes_back_but_the_trajectories() -> None:
     runs = tuple(replace(kept, number=0, run=None) for kept in kept_runs())
     assert state_from(text()) == State(PAPER, Wish(PAPER, WISH.changes), (OTHER,), runs, runs[1])
+
+
+@pytest.mark.parametrize("added", ADDED)
+def test_a_road_made_of_parts_comes_back(added: str) -> None:
+    wish = Wish(PAPER, with_part(PAPER, added))
+    found = state_from(state_text(PAPER, wish, [wish.config()], (), None))
+    assert found.wish is not None
+    assert found.wish.config() == found.presets[0] == wish.config()
 
 
 @pytest.mark.parametrize("stored", ["", "nonsense", "[]", "null", "3", "[" * 100_000, " " * LONGEST + "{}"])

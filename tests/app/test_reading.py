@@ -91,9 +91,9 @@ def test_marks_are_named_and_the_highest_comes_first() -> None:
 
 def test_all_modes_are_told_with_what_moves() -> None:
     table = modes_page(0.6, MODES)
-    assert "<th>2 Bounce</th><td>1.55 Hz</td><td>55 %</td><td>hull up and down 87 %</td>" in table
+    assert "<th>2 Bounce</th><td>1.55 Hz</td><td>55 %</td><td>hull up and down 87\N{NO-BREAK SPACE}%</td>" in table
     assert "<th>v/λ</th><td>0.60 Hz</td><td></td>" in table
-    assert re.search(r"hop of I5 \d+ %, hop of R5 \d+ %", table)
+    assert re.search(r"hop of I5 \d+\s%, hop of R5 \d+\s%", table)
     assert "Hop of R1 353" in table.split("<details>")[1]
     assert "<th>v/λ" not in modes_page(None, MODES)
     assert "no rest pose" in modes_page(0.6, None)

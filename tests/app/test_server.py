@@ -17,7 +17,8 @@ import viser
 import app.server
 from app.server import Explorer, ServerError, free_port, serve
 from model.config import load_config
-from tests.app.conftest import Tab, trackride_threads, wait_for
+from model.trajectory import Trajectory
+from tests.app.conftest import PATIENCE, Tab, simulate_at_once, trackride_threads, wait_for
 
 PAPER = load_config("paper")
 
@@ -63,6 +64,26 @@ def test_the_page_is_served_and_stopping_ends_everything(explore: Any, open_tab:
     explorer.stop()
     assert not trackride_threads()
     assert explorer.sessions == ()
+
+
+def test_stopping_waits_for_a_tab_that_is_just_being_closed(explore: Any, open_tab: Any) -> None:
+    """Otherwise its threads speak to a server that is gone."""
+    begun, go_on = threading.Event(), threading.Event()
+
+    def slow(config: Any, **watched: Any) -> Trajectory:
+        begun.set()
+        go_on.wait(PATIENCE)
+        return simulate_at_once(config, **watched)
+
+    explorer: Explorer = explore(run=slow)
+    tab: Tab = open_tab(explorer)
+    assert begun.wait(PATIENCE)
+    wait_for(lambda: explorer.sessions, "the session")
+    tab.close()
+    wait_for(lambda: not explorer.server.get_clients(), "the server to notice")
+    threading.Timer(0.3, go_on.set).start()
+    explorer.stop()
+    assert not trackride_threads()
 
 
 def test_a_file_of_ones_own_stands_beside_the_presets(explore: Any, open_tab: Any) -> None:

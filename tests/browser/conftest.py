@@ -1,15 +1,16 @@
-"""One explorer and one browser for all tests; a tab for each."""
+"""One explorer, one browser and one tab for all tests, and more tabs where one is not enough."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
 import pytest
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Browser, ViewportSize
 
 from tests.browser.driver import Explorer, chromium, running_explorer
 
 OpenTab = Callable[..., Explorer]
+SIZE: ViewportSize = {"width": 1280, "height": 720}
 
 
 @pytest.fixture(scope="session")
@@ -29,8 +30,8 @@ def open_tab(browser: Browser, address: str) -> Iterator[OpenTab]:
     """A function that opens the explorer in a tab of its own."""
     contexts = []
 
-    def open_one(width: int = 1280, height: int = 720) -> Explorer:
-        contexts.append(browser.new_context(viewport={"width": width, "height": height}))
+    def open_one(size: ViewportSize = SIZE) -> Explorer:
+        contexts.append(browser.new_context(viewport=size))
         return Explorer(contexts[-1].new_page()).open(f"{address}/?fixedDpr=0.5")
 
     yield open_one
@@ -38,17 +39,17 @@ def open_tab(browser: Browser, address: str) -> Iterator[OpenTab]:
         context.close()
 
 
-@pytest.fixture
-def explorer(open_tab: OpenTab) -> Explorer:
-    return open_tab()
-
-
-@pytest.fixture(scope="module")
-def at_rest(browser: Browser, address: str) -> Iterator[Explorer]:
-    """A tab that all tests of a module share: opening one takes seconds. Paused, so that it draws only changes."""
-    context = browser.new_context(viewport={"width": 1280, "height": 720})
-    explorer = Explorer(context.new_page()).open(f"{address}/?fixedDpr=0.5")
-    explorer.button("Pause").click()
-    expect(explorer.button("Play").first).to_be_visible()
-    yield explorer
+@pytest.fixture(scope="session")
+def shared(browser: Browser, address: str) -> Iterator[Explorer]:
+    context = browser.new_context(viewport=SIZE)
+    yield Explorer(context.new_page()).open(f"{address}/?fixedDpr=0.5")
     context.close()
+
+
+@pytest.fixture
+def at_rest(shared: Explorer) -> Explorer:
+    """The tab that the tests share, since opening one takes seconds: paused, so that it draws only changes, at the
+    run's start, with the parameters of the paper's vehicle. A test leaves folders closed as it found them; what it pins
+    or keeps stays."""
+    shared.come_to_rest()
+    return shared

@@ -24,6 +24,8 @@ FIRST_RUN = 120_000  # ms: the interface, and the model's compilation if nobody 
 SOON = 60_000  # ms: anything else, on a busy machine with software WebGL…
 DOWNLOAD = 120_000  # ms: … but what the browser has to draw a large picture for
 
+NEW_CURVES = "old => document.querySelector('.uplot canvas').toDataURL() !== old"  # JavaScript
+
 expect.set_options(timeout=SOON)
 
 
@@ -70,6 +72,24 @@ class Explorer:
         expect(self.charts.first).to_be_visible(timeout=SOON)
         return self
 
+    def come_to_rest(self) -> None:
+        """As after opening, but paused at the start of the run and without messages."""
+        self.page.evaluate("document.querySelectorAll('.mantine-Notification-closeButton').forEach(one => one.click())")
+        if self.button("● Drive").is_visible():
+            self.button("○ Run").click()
+            expect(self.status).to_contain_text("real time")
+        if self.button("Pause").is_visible():
+            self.button("Pause").click()
+        expect(self.button("Play").first).to_be_visible()
+        self.press("Time, s", "Home")
+        self.page.get_by_role("tab", name="Loads").click()
+        before = self.run_number()
+        self.status.click()  # no box has the keys any more
+        self.page.keyboard.press("r")
+        self.wait_for_run(after=before)
+        self.wait_for_value("Time, s", "now === 0")
+        expect(self.page.locator(".mantine-Notification-closeButton")).to_have_count(0)
+
     @property
     def status(self) -> Locator:
         """The line that names the run."""
@@ -109,6 +129,10 @@ class Explorer:
         """A key on a slider."""
         self.thumb(label).focus()
         self.page.keyboard.press(key)
+
+    def fold(self, folder: str) -> None:
+        """Open or close a folder of controls."""
+        self.page.get_by_text(folder, exact=True).first.click()  # not a heading in the plots' panel
 
     def run_number(self) -> int:
         found = re.search(r"Run (\d+)", self.status.inner_text())

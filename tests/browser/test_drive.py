@@ -8,7 +8,7 @@ from time import monotonic
 
 from playwright.sync_api import expect
 
-from tests.browser.driver import SOON, Explorer
+from tests.browser.driver import NEW_CURVES, SOON, Explorer
 
 
 def driven(explorer: Explorer) -> str:
@@ -19,6 +19,11 @@ def driven(explorer: Explorer) -> str:
 def seconds(explorer: Explorer) -> int:
     found = re.match(r"(\d+):(\d+) · \d+ m · ", driven(explorer))
     return 60 * int(found.group(1)) + int(found.group(2)) if found else 0
+
+
+def last_row(explorer: Explorer) -> float:
+    """Where the player's last row stands, px: it stays there."""
+    return explorer.page.locator("label", has_text="Time scale").evaluate("label => label.getBoundingClientRect().y")
 
 
 def wait_until(explorer: Explorer, condition: Callable[[], bool]) -> None:
@@ -37,66 +42,70 @@ def set_hidden(explorer: Explorer, hidden: bool) -> None:
     )
 
 
-def test_the_drive_goes_on_follows_sliders_and_rests_in_the_background(explorer):
-    page = explorer.page
+def test_the_drive_goes_on_follows_sliders_and_rests_in_the_background(at_rest: Explorer) -> None:
+    page, run = at_rest.page, at_rest.run_number()
     assert not page.get_by_text("In view").is_visible()
-    explorer.button("○ Drive").click()
-    wait_until(explorer, lambda: seconds(explorer) >= 2)
-    curves = explorer.curves()
-    before = seconds(explorer)
-    explorer.press("Speed", "ArrowRight")
-    wait_until(explorer, lambda: seconds(explorer) > before)
-    assert explorer.curves() != curves
-    assert re.search(r"\d\.\d\d× of 1× real time", driven(explorer))
-    assert "Drive" in explorer.status.inner_text()
+    height = last_row(at_rest)
+    at_rest.button("○ Drive").click()
+    wait_until(at_rest, lambda: seconds(at_rest) >= 2)
+    wait_until(at_rest, lambda: abs(last_row(at_rest) - height) < 1)
+    curves = at_rest.curves()
+    before = seconds(at_rest)
+    at_rest.press("Speed", "ArrowRight")
+    wait_until(at_rest, lambda: seconds(at_rest) > before)
+    page.wait_for_function(NEW_CURVES, arg=curves)
+    wait_until(at_rest, lambda: bool(re.search(r"\d\.\d\d× of 1× real time", driven(at_rest))))
+    expect(at_rest.status).to_contain_text("Drive")
 
-    set_hidden(explorer, True)
-    explorer.wait_until_still(explorer.curves)
-    set_hidden(explorer, False)
-    rested = seconds(explorer)
-    wait_until(explorer, lambda: seconds(explorer) > rested)
+    set_hidden(at_rest, True)
+    at_rest.wait_until_still(at_rest.curves)
+    set_hidden(at_rest, False)
+    rested = seconds(at_rest)
+    wait_until(at_rest, lambda: seconds(at_rest) > rested)
 
-    explorer.button("◀ Step").click()
-    expect(explorer.status).to_contain_text("look back")
-    expect(explorer.thumb("Time")).to_be_visible()
-    end = explorer.value("Time")
-    assert end > rested
+    at_rest.button("◀ Step").click()
+    expect(at_rest.status).to_contain_text("look back")
+    at_rest.wait_for_value("Time, s", "now > value", rested)
+    end = at_rest.value("Time, s")
     page.get_by_role("tab", name="Spectrum").click()
     expect(page.get_by_text("The drive from").locator("visible=true")).to_have_count(1)
-    explorer.press("Time", "Home")
-    wait_until(explorer, lambda: explorer.value("Time") < end)
+    at_rest.press("Time, s", "Home")
+    at_rest.wait_for_value("Time, s", "now < value", end)
     page.get_by_role("tab", name="Loads").click()
-    explorer.button("Drive on").click()
-    wait_until(explorer, lambda: seconds(explorer) > end)
+    at_rest.button("Drive on").click()
+    wait_until(at_rest, lambda: seconds(at_rest) > end)
 
-    explorer.button("Restart").click()
-    wait_until(explorer, lambda: driven(explorer).startswith("0:00 "))
-    explorer.button("○ Run").click()
-    explorer.wait_for_run(after=2)
-    expect(explorer.thumb("Time")).to_be_visible()
+    at_rest.button("Restart").click()
+    wait_until(at_rest, lambda: driven(at_rest).startswith("0:00 "))
+    at_rest.button("○ Run").click()
+    at_rest.wait_for_run(after=run)
+    expect(at_rest.thumb("Time, s")).to_be_visible()
 
 
-def test_keys_work_outside_of_text_boxes_only(explorer):
-    page = explorer.page
+def test_keys_work_outside_of_text_boxes_only(at_rest: Explorer) -> None:
+    page = at_rest.page
     downloads: list[object] = []
     page.on("download", lambda download: downloads.append(download))
-    box = explorer.control("Road stiffness").locator("xpath=..").locator("input[type=text]")
+    at_rest.press("Time, s", "End")
+    at_rest.wait_for_value("Time, s", "now > 9")
+    box = at_rest.box("Road stiffness")
     box.click()
     for key in (" ", "s", "b", "d", "f", "r"):
         page.keyboard.press(key)
     page.wait_for_timeout(1500)
     assert downloads == []
-    assert explorer.button("Pause").is_visible()
-    assert explorer.button("● Run").is_visible()
+    assert at_rest.button("▶ Play").is_visible()
+    assert at_rest.button("● Run").is_visible()
 
     assert page.evaluate("document.activeElement.tagName") == "INPUT"
     box.blur()
-    page.keyboard.press(" ")
-    page.get_by_role("button", name="▶ Play").wait_for()
-    time = explorer.value("Time")
     page.keyboard.press("Shift+ArrowLeft")
-    wait_until(explorer, lambda: explorer.value("Time") < time)
+    at_rest.wait_for_value("Time, s", "now < 9.95")
+    page.keyboard.press(" ")
+    expect(at_rest.button("Pause")).to_be_visible()
+    page.keyboard.press(" ")
+    expect(at_rest.button("▶ Play")).to_be_visible()
     page.keyboard.press("d")
-    page.get_by_role("button", name="● Drive").wait_for()
+    expect(at_rest.button("● Drive")).to_be_visible()
     page.keyboard.press("d")
-    page.get_by_role("button", name="● Run").wait_for()
+    expect(at_rest.button("● Run")).to_be_visible()

@@ -10,9 +10,7 @@ from PIL import Image
 from playwright.sync_api import expect
 
 from tests.browser.conftest import OpenTab
-from tests.browser.driver import DOWNLOAD, SOON, Explorer
-
-NEW_CURVES = "old => document.querySelector('.uplot canvas').toDataURL() !== old"
+from tests.browser.driver import DOWNLOAD, NEW_CURVES, SOON, Explorer
 
 
 def test_a_slider_moved_by_key_makes_a_new_run_whose_loads_stand_in_the_plot(at_rest: Explorer) -> None:
@@ -25,10 +23,10 @@ def test_a_slider_moved_by_key_makes_a_new_run_whose_loads_stand_in_the_plot(at_
 
 def test_a_slider_dragged_makes_runs_on_the_way_and_one_where_it_was_left(at_rest: Explorer) -> None:
     page, value = at_rest.page, at_rest.value("Speed")
+    at_rest.thumb("Speed").hover()  # once it stands still
     box = at_rest.thumb("Speed").bounding_box()
     assert box is not None
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-    page.mouse.move(x, y)
     page.mouse.down()
     for step in range(1, 4):
         before = at_rest.run_number()
@@ -44,23 +42,24 @@ def test_a_slider_dragged_makes_runs_on_the_way_and_one_where_it_was_left(at_res
 
 
 def test_playback_plays_pauses_and_scrubs(at_rest: Explorer) -> None:
-    at_rest.press("Time", "Home")
-    at_rest.wait_for_value("Time", "now < 0.05")
     at_rest.button("Play").first.click()
-    at_rest.wait_for_value("Time", "now > 0.2")
+    at_rest.wait_for_value("Time, s", "now > 0.2")
     at_rest.button("Pause").click()
     expect(at_rest.button("Play").first).to_be_visible(timeout=SOON)
-    assert at_rest.wait_until_still(lambda: at_rest.value("Time")) > 0.2
+    paused_at = at_rest.wait_until_still(lambda: at_rest.value("Time, s"))
+    assert paused_at > 0.2
+    at_rest.press("Time, s", "Home")
+    at_rest.wait_for_value("Time, s", "now < 0.05")
 
 
 def test_a_screenshot_shows_the_vehicle_and_is_named_after_preset_and_change(at_rest: Explorer) -> None:
     before = at_rest.run_number()
     at_rest.press("Amplitude", "ArrowRight")
     at_rest.wait_for_run(after=before)
-    at_rest.page.get_by_text("Export", exact=True).click()
+    at_rest.fold("Export")
     with at_rest.page.expect_download(timeout=DOWNLOAD) as download:
         at_rest.button("Screenshot").click()
-    at_rest.page.get_by_text("Export", exact=True).click()
+    at_rest.fold("Export")
     name = download.value.suggested_filename
     assert name.endswith(".png")
     assert "amplitude" in name
@@ -78,13 +77,14 @@ def test_a_screenshot_shows_the_vehicle_and_is_named_after_preset_and_change(at_
 
 def test_a_value_out_of_range_is_refused_with_range_and_unit_and_the_run_stays(at_rest: Explorer) -> None:
     before = at_rest.status.inner_text()
-    at_rest.page.get_by_text("Ground contact", exact=True).click()
+    at_rest.fold("Ground contact")
     box = at_rest.control("Friction").locator("input").or_(at_rest.control("Friction")).last
     box.fill("9")
     box.press("Enter")
     expect(at_rest.page.get_by_text("Not possible")).to_be_visible(timeout=SOON)
     expect(at_rest.page.get_by_text("Friction").filter(has_text="to").first).to_be_visible(timeout=SOON)
     assert at_rest.status.inner_text() == before
+    at_rest.fold("Ground contact")
 
 
 def test_tabs_are_independent(at_rest: Explorer, open_tab: OpenTab) -> None:

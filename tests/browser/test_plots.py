@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.driver import Explorer
@@ -28,17 +27,8 @@ def show(page: Page, tab: str) -> None:
     page.get_by_role("tab", name=tab, exact=True).click()
 
 
-@pytest.fixture(scope="module")
-def page(browser, address) -> Page:
-    context = browser.new_context(viewport={"width": 1600, "height": 900})
-    explorer = Explorer(context.new_page()).open(f"{address}/?fixedDpr=0.5")
-    explorer.button("Pause").click()
-    explorer.press("Time", "Home")
-    yield explorer.page
-    context.close()
-
-
-def test_the_page_tells_which_tab_is_in_front(page):
+def test_the_page_tells_which_tab_is_in_front(at_rest: Explorer) -> None:
+    page = at_rest.page
     for tab in ("Ride", "Load map", "Loads"):
         show(page, tab)
         page.wait_for_function(
@@ -46,8 +36,8 @@ def test_the_page_tells_which_tab_is_in_front(page):
         )
 
 
-def test_zoom_in_one_plot_is_the_zoom_of_all_over_tabs_and_runs(page):
-    explorer = Explorer(page)
+def test_zoom_in_one_plot_is_the_zoom_of_all_over_tabs_and_runs(at_rest: Explorer) -> None:
+    page = at_rest.page
     show(page, "Loads")
     box = page.locator(".u-over:visible").first.bounding_box()
     assert box is not None
@@ -61,10 +51,10 @@ def test_zoom_in_one_plot_is_the_zoom_of_all_over_tabs_and_runs(page):
     show(page, "Ride")
     page.wait_for_function(f"() => ({RANGES})().length === 4")
     page.wait_for_function(zoomed)
-    before = explorer.run_number()
+    before = at_rest.run_number()
     curves = page.locator(".uplot canvas:visible").first.evaluate("canvas => canvas.toDataURL()")
-    explorer.press("Speed", "ArrowRight")
-    explorer.wait_for_run(after=before)
+    at_rest.press("Speed", "ArrowRight")
+    at_rest.wait_for_run(after=before)
     page.wait_for_function(
         "old => [...document.querySelectorAll('.uplot canvas')].find(c => c.offsetParent).toDataURL() !== old",
         arg=curves,
@@ -92,21 +82,22 @@ def test_zoom_in_one_plot_is_the_zoom_of_all_over_tabs_and_runs(page):
     page.wait_for_function(f"() => ({MAP})()[0] < 0.1 && ({MAP})()[1] > 9.9")
 
 
-def test_one_cursor_goes_through_all_plots_and_the_values_at_it_are_shown(page):
-    explorer = Explorer(page)
+def test_one_cursor_goes_through_all_plots_and_the_values_at_it_are_shown(at_rest: Explorer) -> None:
+    page = at_rest.page
     for tab, plots in (("Loads", 3), ("Ride", 4)):
         show(page, tab)
-        explorer.press("Time", "Home")
+        at_rest.press("Time, s", "Home")
         page.wait_for_function(
             f"() => ({CURSORS})().length === {plots} && ({CURSORS})().every(t => Math.abs(t) < 0.05)"
         )
-        explorer.press("Time", "End")
+        at_rest.press("Time, s", "End")
         page.wait_for_function(f"() => ({CURSORS})().every(t => Math.abs(t - 10) < 0.05)")
         page.wait_for_function(f"() => ({VALUES})().flat().every(value => Number.isFinite(value))")
         assert [len(values) for values in page.evaluate(VALUES)] == ([6, 5, 1] if tab == "Loads" else [1, 1, 1, 6])
 
 
-def test_the_ride_is_told_in_a_line_and_in_tables(page):
+def test_the_ride_is_told_in_a_line_and_in_tables(at_rest: Explorer) -> None:
+    page = at_rest.page
     show(page, "Ride")
     expect(page.locator(".trackride-comfort:visible")).to_contain_text("uncomfortable")
     tables = page.locator(".trackride-page:visible .felt")
@@ -114,29 +105,29 @@ def test_the_ride_is_told_in_a_line_and_in_tables(page):
     expect(tables.first).to_contain_text("Absorbed power, W")
 
 
-def test_a_mode_swings_in_the_3d_view_until_the_run_is_played(page):
-    explorer = Explorer(page)
+def test_a_mode_swings_in_the_3d_view_until_the_run_is_played(at_rest: Explorer) -> None:
+    page = at_rest.page
     show(page, "Spectrum")
-    choice = explorer.control("Show in 3-D")
+    choice = at_rest.control("Show in 3-D")
     choice.click()
     page.get_by_role("option", name="Bounce").click()
-    expect(explorer.status).to_contain_text("shown at 1 Hz")
+    expect(at_rest.status).to_contain_text("shown at 1 Hz")
     page.wait_for_function("() => '/ghost' in __viserMutable.nodePoseData")
-    explorer.button("Play").click()
-    expect(explorer.status).to_contain_text("real time")
+    at_rest.button("Play").click()
+    expect(at_rest.status).to_contain_text("real time")
     page.wait_for_function("() => !('/ghost' in __viserMutable.nodePoseData)")
     expect(choice).to_have_value("– the run –")
-    explorer.button("Pause").click()
+    at_rest.button("Pause").click()
 
 
-def test_a_wheel_hidden_in_a_plot_takes_its_baseline_along(page):
-    explorer = Explorer(page)
+def test_a_wheel_hidden_in_a_plot_takes_its_baseline_along(at_rest: Explorer) -> None:
+    page = at_rest.page
     show(page, "Loads")
-    before = explorer.run_number()
+    before = at_rest.run_number()
     page.locator(".trackride-status").click()  # no box has the keys
     page.keyboard.press("b")
-    explorer.press("Speed", "ArrowLeft")
-    explorer.wait_for_run(after=before)
+    at_rest.press("Speed", "ArrowLeft")
+    at_rest.wait_for_run(after=before)
     hidden = f"() => ({CHARTS})()[0].series.filter(curve => !curve.show).map(curve => curve.label + curve.class).sort()"
     page.wait_for_function(f"() => ({CHARTS})()[0].series.some(curve => curve.class === 'baseline')")
     name = page.locator(".uplot:visible").first.locator(".u-series.run th", has_text="R2")
@@ -146,7 +137,8 @@ def test_a_wheel_hidden_in_a_plot_takes_its_baseline_along(page):
     page.wait_for_function(f"() => ({hidden})().length === 0")
 
 
-def test_the_other_tabs_show_spectrum_map_trust_and_equations(page):
+def test_the_other_tabs_show_spectrum_map_trust_and_equations(at_rest: Explorer) -> None:
+    page = at_rest.page
     show(page, "Spectrum")
     names = page.locator(".trackride-frequency .trackride-marks i")
     expect(names).to_have_count(3)

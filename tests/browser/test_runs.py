@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 from PIL import Image
-from playwright.sync_api import Download, Page, expect
+from playwright.sync_api import Download, expect
 
 from app.comparison import change_text, figure_text
 from model import load_config, simulate
@@ -30,11 +30,6 @@ def content(download: Download) -> bytes:
     return Path(download.path()).read_bytes()
 
 
-def fold(page: Page, folder: str) -> None:
-    """Open or close a folder of controls."""
-    page.get_by_text(folder, exact=True).click()
-
-
 def upload(explorer: Explorer, file: Path, text: str) -> None:
     file.write_text(text)
     with explorer.page.expect_file_chooser() as chooser:
@@ -50,7 +45,7 @@ def test_from_a_pinned_vehicle_to_a_figure_that_proves_it(at_rest: Explorer) -> 
     page.get_by_role("tab", name="Runs").click()
     page.keyboard.press("b")
     expect(page.locator(".trackride-compared")).to_contain_text("Baseline ● Paper vehicle")
-    fold(page, "Suspension")
+    at_rest.fold("Suspension")
     before = at_rest.run_number()
     at_rest.control("Road damping").fill("2.366")
     at_rest.wait_for_run(after=before)
@@ -62,7 +57,7 @@ def test_from_a_pinned_vehicle_to_a_figure_that_proves_it(at_rest: Explorer) -> 
     assert rms.change > 1
     worst = max((row for row in rows if row.figure == AIR_TIME.label), key=lambda row: row.now - row.baseline)
     assert worst.now > worst.baseline
-    tables = page.locator(".trackride-figures")
+    tables = page.locator(".trackride-figures:visible")
     for table, name, row in ((0, f"{rms.figure}, {rms.unit}", rms), (1, worst.wheel, worst)):
         line = tables.nth(table).locator("tr").filter(has=page.get_by_role("cell", name=name, exact=True))
         texts = (figure_text(row.now), figure_text(row.baseline), change_text(row.change))
@@ -70,14 +65,14 @@ def test_from_a_pinned_vehicle_to_a_figure_that_proves_it(at_rest: Explorer) -> 
 
     kept = page.get_by_text("Road damping 4.732 → 2.366 kN s/m")
     expect(kept.last).to_be_visible()
-    fold(page, "Suspension")
-    fold(page, "Export")
+    at_rest.fold("Suspension")
+    at_rest.fold("Export")
     figure = download(at_rest, "Figure", "PNG")
     assert figure.suggested_filename == "paper-vehicle_road-damping-2.366-kn-s-m_figure.png"
     assert Image.open(io.BytesIO(content(figure))).width > 2000
     run = download(at_rest, "Data", "NPZ")
     assert Trajectory.load(run.path()).config == paper.replace({DAMPING: 2366})
-    fold(page, "Export")
+    at_rest.fold("Export")
 
 
 def test_undo_and_redo_by_keys(at_rest: Explorer) -> None:
@@ -86,7 +81,7 @@ def test_undo_and_redo_by_keys(at_rest: Explorer) -> None:
     at_rest.press("Speed", "ArrowRight")
     at_rest.wait_for_run(after=before)
     at_rest.wait_for_value("Speed", "now > value", speed)
-    page.locator(".trackride-compared").click()  # no box has the keys any more
+    at_rest.status.click()  # no box has the keys any more
     page.keyboard.press("Control+z")
     at_rest.wait_for_value("Speed", "now === value", speed)
     page.keyboard.press("Control+Shift+z")
@@ -95,7 +90,7 @@ def test_undo_and_redo_by_keys(at_rest: Explorer) -> None:
 
 def test_faults_of_a_file_are_shown_and_nothing_changes(at_rest: Explorer, tmp_path: Path) -> None:
     page = at_rest.page
-    fold(page, "Import and presets")
+    at_rest.fold("Import and presets")
     before = at_rest.run_number()
     upload(at_rest, tmp_path / "bad.yaml", "drive: {speed_kmh: 4000}\nroads: {}\n")
     faults = page.locator(".trackride-faults li")
@@ -104,12 +99,13 @@ def test_faults_of_a_file_are_shown_and_nothing_changes(at_rest: Explorer, tmp_p
     page.get_by_role("dialog").get_by_role("button", name="Close").click()
     expect(faults).to_have_count(0)
     assert at_rest.run_number() == before
-    fold(page, "Import and presets")
+    at_rest.fold("Import and presets")
 
 
 def test_preset_parameters_runs_and_baseline_come_back_with_a_reload(at_rest: Explorer, tmp_path: Path) -> None:
     page = at_rest.page
-    fold(page, "Import and presets")
+    page.get_by_role("tab", name="Runs").click()
+    at_rest.fold("Import and presets")
     upload(at_rest, tmp_path / "tank.yaml", "name: My tank\ndrive: {speed_kmh: 30}\n")
     expect(at_rest.control("Preset")).to_have_value("My tank")
     before = at_rest.run_number()
@@ -127,14 +123,13 @@ def test_preset_parameters_runs_and_baseline_come_back_with_a_reload(at_rest: Ex
         "text => Object.values(localStorage).some(stored => stored.includes(text))", arg='"drive.speed_kmh": 70'
     )
 
-    page.reload()
-    at_rest.open(page.url)
+    at_rest.open(page.url)  # anew
     expect(at_rest.control("Preset")).to_have_value("My tank")
     at_rest.wait_for_value("Speed", "now === value", 70)
     at_rest.wait_for_value("Amplitude", "now === value", 300)
     page.get_by_role("tab", name="Runs").click()
     expect(heading).to_contain_text("Baseline ● Amplitude 100 → 300 mm")
-    expect(page.locator(".trackride-figures").first).to_contain_text(re.compile(r"rms, m/s².*%"))
+    expect(page.locator(".trackride-figures:visible").first).to_contain_text(re.compile(r"rms, m/s².*%"))
     row = page.locator("div:has(> div > p > label)").filter(has_text=re.compile("^Road damping 4.732 → 2.366 kN s/m"))
     row.get_by_role("button", name="Show").first.click()
     expect(at_rest.control("Preset")).to_have_value("Paper vehicle")
