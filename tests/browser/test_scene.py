@@ -21,10 +21,10 @@ def test_a_click_on_a_wheel_opens_its_card_and_another_closes_it(open_tab: OpenT
     page = explorer.page
     explorer.wait_until_still(lambda: page.evaluate("__viserTestpoints.rendererInfo.render.frame"))
     card = page.locator(".trackride-wheel")
-    for _ in range(6):  # the first click may come before the wheel is drawn where it is then, and meet another
+    for _ in range(15):  # the first click may come before the wheel is drawn where it is then, and meet another
         page.mouse.click(*FRONT_WHEEL)
         with suppress(PlaywrightTimeoutError):
-            card.filter(has_text="R1").wait_for(timeout=SOON / 3)
+            card.filter(has_text="R1").wait_for(timeout=SOON / 10)
             break
     expect(card).to_contain_text("R1")
     expect(card).to_contain_text("kN")
