@@ -30,7 +30,9 @@ from model.simulate import simulate
 from model.trajectory import Trajectory
 
 VIEW_RATE = 30.0  # Hz: the 3-D view
-TEXT_RATE = 10.0  # Hz: numbers, time slider, time cursors
+TEXT_RATE = 10.0  # Hz: numbers, time slider, time cursors …
+DRAG_TEXT_RATE = 3.0  # Hz: … while runs follow each other, whose curves the page has to draw meanwhile
+DRAG_PAUSE = 0.3  # s after which they do not any more
 REFUSAL_DELAY = 1.2  # s without another wish until a bad value is refused: time to finish typing
 SEEN_WITHIN = 2.0  # s in which what an errand wants is drawn, or else it goes on without
 SAME_ERROR = 5.0  # s before the same error is logged and shown again
@@ -60,6 +62,7 @@ class Session:
         self._intents: dict[str, Callable[[], None]] = {}  # what the view is to do: the newest of each kind
         self._refused: Refused | None = None  # a bad wish that is not yet spoken of
         self._refuse_at = 0.0  # monotonic s
+        self._shown_at = self._told_at = -DRAG_PAUSE  # monotonic s: when a run was shown last, and numbers and times
 
         self._good: Finished | Driven | None = None  # what is shown
         self._steps = 0  # to be redone, or undone when negative; under the lock
@@ -266,14 +269,14 @@ class Session:
     # ── What is seen: on the view's thread from here on ──
 
     def _show(self) -> None:
-        frame, text = 1 / VIEW_RATE, 1 / TEXT_RATE
+        frame = 1 / VIEW_RATE
         before = next_text = monotonic()
         while not self._closed.is_set():
             now = monotonic()
             elapsed, before = now - before, now
             with_text = now >= next_text
             if with_text:
-                next_text = now + text
+                next_text = now + 1 / TEXT_RATE
             for outcome in self._runner.take():
                 self._attempt(partial(self._take, outcome))
             self._attempt(partial(self._draw, elapsed, with_text))
@@ -294,7 +297,7 @@ class Session:
                     self._refused = None
                     self._playback.fit(float(run.t[-1]) if len(run.t) else 0.0)
                     time = self._playback.time
-                self._good = outcome
+                self._good, self._shown_at = outcome, monotonic()
                 self._window.show_run(outcome, time, settled=self._runner.latest.number == wish.number)
                 self._desk.finished(outcome, monotonic())
             case Driven(wish, state):
@@ -333,11 +336,15 @@ class Session:
         if refused is not None and self._good is not None and self._runner.withdraw(refused.wish, self._good.wish):
             self._window.refuse(refused, self._good.trajectory.config)
         self._window.draw(playback.time, elapsed)
-        if with_text:
+        if not with_text:
+            return
+        now = monotonic()
+        if now >= self._told_at + 1 / DRAG_TEXT_RATE or now >= self._shown_at + DRAG_PAUSE:
+            self._told_at = now
             self._window.show_time(playback, driving)
             self._window.show_status(self._runner.under_way())
             self._window.fit_page()
-            self._desk.tick(monotonic())
+        self._desk.tick(now)
 
     def _export(self, what: str) -> None:
         run, exports = self.shown, self._window.exports

@@ -56,6 +56,31 @@ def test_thinned_curves_rise_in_time_and_span_all_of_it() -> None:
     assert np.abs(np.interp(t, time, values[:, 0]) - np.sin(t)).max() < 0.03
 
 
+def test_what_is_left_out_lies_on_the_lines_that_are_drawn() -> None:
+    t = np.linspace(0, 10, 5003)
+    waves = np.column_stack([np.sin(t), np.abs(np.sin(1.7 * t)) - 0.5, np.where(t < 6, 0.3, np.nan)])
+    time, values = thin(t, waves)
+    assert len(time) < 500
+    assert np.isin(time, t).all()
+    assert np.diff(time).max() <= 10 / 160
+    for given, drawn in zip(waves.T[:2], values.T[:2], strict=True):
+        assert np.abs(np.interp(t, time, drawn) - given).max() <= 2.5e-3 * 2.0001
+        assert (drawn.min(), drawn.max()) == (given.min(), given.max())
+    ends = np.isfinite(values[:, 2])
+    assert time[ends].max() == t[t < 6].max()
+
+
+def test_a_rough_run_keeps_the_extremes_of_every_stretch() -> None:
+    t = np.arange(20_000) / 200
+    noise = np.random.default_rng(0).normal(size=(len(t), 2))
+    time, values = thin(t, noise)
+    assert len(time) == 2 * BUCKETS
+    for first in range(0, len(t), 50):
+        here = (time >= t[first]) & (time <= t[first + 49])
+        np.testing.assert_array_equal(values[here].max(axis=0), noise[first : first + 50].max(axis=0))
+        np.testing.assert_array_equal(values[here].min(axis=0), noise[first : first + 50].min(axis=0))
+
+
 def test_a_short_run_is_not_thinned() -> None:
     t = np.arange(2 * BUCKETS) / 200
     time, values = thin(t, np.cos(t)[:, None])

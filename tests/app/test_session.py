@@ -197,9 +197,10 @@ def test_charts_are_kept_so_that_zoom_survives(explore: Any, open_tab: Any) -> N
     tab: Tab = open_tab(explore())
     wait_for(lambda: tab.shows_run(1))
     before = {uuid for uuid, widget in tab.widgets.items() if widget["type"] == "GuiUplotMessage"}
+    assert before
     tab.use("Speed, km/h", 30)
     wait_for(lambda: tab.shows_run(2))
-    assert before == {uuid for uuid, widget in tab.widgets.items() if widget["type"] == "GuiUplotMessage"}
+    assert before <= {uuid for uuid, widget in tab.widgets.items() if widget["type"] == "GuiUplotMessage"}
     tab.use("Road wheels", 4)  # other curves: other charts
     wait_for(lambda: tab.shows_run(3))
     wait_for(lambda: [len(chart["series"]) for chart in tab.charts()[:3]] == [6, 5, 2], "charts for four wheels")
