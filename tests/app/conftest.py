@@ -27,12 +27,13 @@ PATIENCE = 10.0  # s that a test waits for something to happen
 
 
 def wait_for(condition: Callable[[], Any], what: str = "it") -> Any:
-    """The first true answer of the condition."""
+    """The first true answer of the condition; one that looks for what is not there yet has none."""
     end = time.monotonic() + PATIENCE
     while time.monotonic() < end:
-        answer = condition()
-        if answer:
-            return answer
+        with suppress(LookupError):
+            answer = condition()
+            if answer:
+                return answer
         time.sleep(0.005)
     raise AssertionError(f"waited {PATIENCE:g} s for {what}")
 

@@ -51,8 +51,8 @@ def test_stepping_back_pauses_the_drive_and_shows_its_past(explore: Any, open_ta
 def test_tabs_that_cost_more_follow_a_drive_and_say_which_stretch_they_show(explore: Any, open_tab: Any) -> None:
     tab: Tab = open_tab(explore())
     wait_for(lambda: tab.shows_run(1))
-    tab.use("Tabs in front", "Spectrum,Load map,Trust")
     drive(tab, 0.2)
+    tab.use("Tabs in front", "Spectrum,Load map,Trust")
 
     def shown() -> set[str]:
         texts = [w["props"]["content"] for w in tuple(tab.widgets.values()) if w["type"] == "GuiHtmlMessage"]

@@ -136,7 +136,7 @@ def test_a_movie_films_the_run_and_playback_goes_on(
     wait_for(lambda: tab.shows_run(1))
     scene: Any = explorer.sessions[0]._window.scene
     tab.use("Time, s", 1.0)
-    wait_for(lambda: scene.times[-1] == 1.0)
+    wait_for(lambda: scene.times[-1:] == [1.0])
     tab.use("In motion", "Movie")
     count = 0
     times = []
