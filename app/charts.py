@@ -12,8 +12,9 @@ from app.plots import TIME, Curve, Plot
 from app.screen import AXIS_NAME
 
 FONT = "11px system-ui, sans-serif"
-OPACITY = {"run": "", "baseline": "80", "static": "90"}  # of curves by kind, as the last byte of their colour
-FADED = "26"
+OPACITY = {"run": "", "baseline": "b0", "static": "c0"}  # of curves by kind, as the last byte of their colour
+FADED = "38"
+WIDTH = 1  # px; the page makes 1.5 of it where a line is not pale (plots.js)
 DASH = {"baseline": (4, 3), "static": (1, 3)}
 KEY = {"static": "dotted: at rest", "baseline": "dashed: baseline"}
 TICKS: viser.uplot.Axis_Ticks = {"size": 4, "width": 1}
@@ -103,7 +104,7 @@ def _line(curve: Curve) -> viser.uplot.Series:
         "label": curve.label,
         "class": curve.kind,
         "stroke": curve.colour + (FADED if curve.faded else OPACITY[curve.kind]),
-        "width": 1.5,
+        "width": WIDTH,
         "points": {"show": False},
     }
     return line | {"dash": DASH[curve.kind]} if curve.kind in DASH else line
