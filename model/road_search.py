@@ -2,8 +2,9 @@
 
 D(s) = (s − X)² + (h(s) − Y)² is the squared distance from the centre P = (X, Y) to the profile; half its slope is
 g(s) = (s − X) + (h − Y) h′. Where the road is too gently curved for a wheel in contact to have two minima of D, a
-Halley iteration on g = 0 from a stored guess finds the one. Elsewhere all cells that can hold the lowest minimum are
-searched, so that the wheel bridges valleys tighter than itself. How the table is made: road_table.py.
+Halley iteration on g = 0 from a stored guess finds the one; so it does where a single stretch can hold the nearest
+point and has one minimum. Elsewhere all cells that can hold the lowest minimum are searched. Thus a wheel bridges
+valleys tighter than itself. How the table is made: road_table.py.
 """
 
 from __future__ import annotations
@@ -33,8 +34,8 @@ class RoadTable(NamedTuple):
     )  # (C + 1, 8) node x₀, coefficients of h = Σ_k c_k (x − x₀)^k, next node (infinite for the last two)
     slack: np.ndarray  # (C,) how far D can dip below its values at the cell's ends, m²
     bin: np.ndarray  # (bins, 12) guess (above); ceiling: a centre above this does not touch, m; floor: down to here the
-    # stretches hold the nearest point, m; final step: a Halley step shorter than this is the last, m, or, where a wheel
-    # in contact may have more than one minimum, −1
+    # guess leads to the nearest point, or the stretches hold it, m; final step: a Halley step shorter than this is the
+    # last, m, or, where there is no guess, −1
     first_cell: np.ndarray  # (bins,) the cell in which a bin begins
     first_stretch: np.ndarray  # (bins + 1,) where in `stretch` a bin's begin
     stretch: np.ndarray  # (stretches, 2) first and last cell of each
@@ -48,7 +49,7 @@ class RoadTable(NamedTuple):
     @property
     def safe(self) -> np.ndarray:
         """(bins,) one minimum only, for every wheel in contact."""
-        return self.bin[:, FINAL_STEP] > 0.0
+        return np.isneginf(self.bin[:, FLOOR])
 
 
 @inlined
@@ -69,8 +70,9 @@ def profile(cell, c, u):
 
 @inlined
 def _bin(road, x):
-    b = int((x - road.bin_start) * road.bins_per_metre)
-    return min(max(b, 0), len(road.first_cell) - 1)
+    b, last = (x - road.bin_start) * road.bins_per_metre, len(road.first_cell) - 1.0
+    b = b if b > 0.0 else 0.0  # so is NaN: as an integer it would be anything
+    return int(b if b < last else last)
 
 
 @inlined
@@ -204,7 +206,7 @@ def approach(road, X, Y):
     final = road.bin[b, FINAL_STEP]
     if Y > road.bin[b, CEILING]:
         return X, X, 0.0, -FAR, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0
-    if final < 0.0:
+    if final < 0.0 or Y < road.bin[b, FLOOR]:
         return X, X, 0.0, -FAR, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0
     s, c = _guessed(road, b, X, Y)
     cell = road.cell
@@ -227,8 +229,8 @@ def nearest(road, X, Y):
         return X + shift, h, 0.0, 1.0, np.inf
     s, h = X, Y
     found = False
-    final = road.bin[b, FINAL_STEP]
-    if final > 0.0:
+    final, above_floor = road.bin[b, FINAL_STEP], Y >= road.bin[b, FLOOR]
+    if final > 0.0 and above_floor:
         s, c = _guessed(road, b, X, Y)
         for _ in range(12):
             if not road.cell[c, NODE] <= s < road.cell[c, NEXT]:
@@ -240,7 +242,7 @@ def nearest(road, X, Y):
                 # Below the road and far aside, D may have other minima
                 found = Y > h and abs(s - X) <= road.radius
                 break
-    if not found and Y >= road.bin[b, FLOOR]:
+    if not found and above_floor and road.first_stretch[b] < road.first_stretch[b + 1]:
         s, h = _search_stretches(road, X, Y, b)
         found = True
     if not found:

@@ -85,17 +85,18 @@ def tabulate(rows: list[Row], period: float, radius: float) -> RoadTable:
     third, fourth = np.abs(6 * coefficients[:, 3]), np.abs(24 * coefficients[:, 4])
     wildness = (3 * steep * bend + radius * third) ** 2 / 4 + bend**2 / 2 + steep * third + radius * fourth / 6
     last_step = np.clip(np.cbrt(FINAL_ERROR / np.maximum(wildness, 1e-12)), 1e-5, 2e-3)
-    cells = Cells(node, height, coefficients, corner, bulge, slack_above, last_step)
-    ceiling, floor, safe = _judge_bins(edges, cells, radius)
+    convex = _convex_up_to(node, coefficients)
+    cells = Cells(node, height, coefficients, corner, bulge, slack_above, convex, last_step)
+    ceiling, floor = _judge_bins(edges, cells, radius)
     first_stretch, stretch = _find_stretches(edges, cells, ceiling, floor, radius)
 
     cell = np.zeros((len(node), CELL_COLUMNS))
     cell[:, NODE], cell[:, HEIGHT], cell[:-1, HEIGHT + 1 : NEXT] = node, height, coefficients[:, 1:]
     cell[:, NEXT] = np.inf  # of the last but one too: the first and last cells are level and reach on without end
     cell[:-2, NEXT] = node[1:-1]
-    bin = np.empty((bins, BIN_COLUMNS))
+    bin = np.zeros((bins, BIN_COLUMNS))
     bin[:, CEILING], bin[:, FLOOR] = ceiling, floor
-    _guess_contacts(edges, cells, safe, radius, bin)
+    _guess_contacts(edges, cells, first_stretch, stretch, radius, bin)
     return RoadTable(
         cell=cell,
         slack=slack,
@@ -150,20 +151,33 @@ class Cells(NamedTuple):
     corner: np.ndarray  # (C + 1,) the slope jumps at this node
     bulge: np.ndarray  # how far h rises above its values at the cell's ends, at most, m
     slack: np.ndarray  # how far D can dip there, from a centre in contact above the road, m²
+    convex: np.ndarray  # D is convex over the cell for centres up to this height, m
     last_step: np.ndarray  # a Halley step shorter than this is the last, m
 
 
 @allocating
+def _convex_up_to(node, coefficients):
+    """(C,) how high a centre may be for D to be convex over a cell, as far as three points of the cell tell, m."""
+    highest = np.full(len(coefficients), np.inf)
+    for c in range(len(coefficients)):
+        size = node[c + 1] - node[c]
+        for u in (0.0, 0.5 * size, size):
+            h, h1, h2, _h3 = _height(coefficients, c, u)
+            if h2 > 0.0:
+                highest[c] = min(highest[c], h + (1.0 + h1 * h1 - SAFE) / h2)
+    return highest
+
+
+@allocating
 def _judge_bins(edges, cells, radius):
-    """For each bin of wheel positions X: the highest centre that touches; the lowest of those above the road that have
-    not sunk in too deep, where D is not convex; and whether it is, for all in contact.
+    """For each bin of wheel positions X: the highest centre that touches; and −inf where D has one minimum for all in
+    contact, elsewhere the lowest of those above the road that have not sunk in too deep.
     """
-    node, height, coefficients = cells.node, cells.height, cells.coefficients
+    node, height = cells.node, cells.height
     corner, bulge = cells.corner, cells.bulge
     bins = len(edges) - 1
     count = len(node) - 1
-    ceiling, floor = np.empty(bins), np.full(bins, np.inf)
-    safe = np.empty(bins, dtype=np.bool_)
+    ceiling, floor = np.empty(bins), np.empty(bins)
     first = 0
     for b in range(bins):
         left, right = edges[b], edges[b + 1]
@@ -181,70 +195,85 @@ def _judge_bins(edges, cells, radius):
             if node[c] <= right and node[c + 1] >= left:
                 below = max(below, top)
             c += 1
-        ceiling[b] = highest
-        safe[b] = True
+        safe = True
         c = first
-        while c < count and node[c] <= right + radius and safe[b]:
-            safe[b] = not corner[c + 1] or node[c + 1] > right + radius
-            size = node[c + 1] - node[c]
-            for u in (0.0, 0.5 * size, size):
-                h, h1, h2, _ = _height(coefficients, c, u)
-                if 1.0 + h1 * h1 - (highest - h) * max(h2, 0.0) < SAFE:
-                    safe[b] = False
+        while c < count and node[c] <= right + radius and safe:
+            safe = highest <= cells.convex[c] and (not corner[c + 1] or node[c + 1] > right + radius)
             c += 1
-        if not safe[b] and lowest - SEARCHED * radius > below:
-            floor[b] = lowest - SEARCHED * radius
-    return ceiling, floor, safe
+        ceiling[b] = highest
+        floor[b] = lowest - SEARCHED * radius
+        if floor[b] <= below:
+            floor[b] = np.inf
+        if safe:
+            floor[b] = -np.inf
+    return ceiling, floor
 
 
 @allocating
-def _guess_contacts(edges, cells, safe, radius, bin):
+def _guess_contacts(edges, cells, first_stretch, stretch, radius, bin):
     """Fills the columns of a guess and the final step of each bin.
 
     The guess is cubic between what is found above the bin's edges, for wheels that have sunk in a little, and linear in
-    how much lower or higher they are.
+    how much lower or higher they are. There is one where D has one minimum, or one in the only stretch to be searched.
     """
-    node, coefficients, last_step = cells.node, cells.coefficients, cells.last_step
+    node, corner, last_step = cells.node, cells.corner, cells.last_step
     bins, count = len(edges) - 1, len(node) - 1
     width = edges[1] - edges[0]
-    d = (1.0 - SINKING) * radius
-    s_a, slope_a, Y_a, tilt_a = edges[0], width, 0.0, 0.0
-    under, before = 0, 0
-    for b in range(bins + 1):
-        s, slope = edges[b], 1.0
-        sought = 0 < b < bins and safe[b - 1] and safe[b]
-        for _ in range(8 if sought else 1):  # Newton on: the point at s, d along its normal, lies above the edge
-            while under > 0 and s < node[under]:
-                under -= 1
-            while under < count - 1 and s >= node[under + 1]:
-                under += 1
-            h, h1, h2, _h3 = _height(coefficients, under, s - node[under])
-            if not sought:
-                h1 = h2 = 0.0
-            length = np.sqrt(1.0 + h1 * h1)
-            slope = 1.0 / (1.0 - d * h2 / length**3)
-            step = (s - d * h1 / length - edges[b]) * slope
-            s -= step
-            if abs(step) < 1e-9:
-                break
-        Y_b, tilt_b = h + d / length, h1 / (1.0 + h1 * h1 - d * h2 / length)
-        slope_b = slope * width
-        if b > 0:
-            rise = s - s_a
-            bin[b - 1, GUESS], bin[b - 1, GUESS + 1] = s_a, slope_a
-            bin[b - 1, GUESS + 2] = 3 * rise - 2 * slope_a - slope_b
-            bin[b - 1, GUESS + 3] = slope_a + slope_b - 2 * rise
-            bin[b - 1, GUESS_Y], bin[b - 1, GUESS_Y + 1] = Y_a, Y_b - Y_a
-            bin[b - 1, TILT], bin[b - 1, TILT + 1] = tilt_a, tilt_b - tilt_a
-            bin[b - 1, GUESS_CELL] = before
-            final = -1.0
-            if safe[b - 1]:
-                final = last_step[under]
-                for c in range(max(min(before, under) - 1, 0), min(max(before, under) + 2, count)):
-                    final = min(final, last_step[c])
-            bin[b - 1, FINAL_STEP] = final
-        s_a, slope_a, Y_a, tilt_a = s, slope_b, Y_b, tilt_b
-        before = under
+    s_b, slope_b, Y_b, tilt_b, behind = edges[0], 1.0, 0.0, 0.0, 0
+    shared = False  # what was found above the last bin's right edge holds for this bin too
+    for b in range(bins):
+        first, last, s = 0, count - 1, edges[b]
+        guessed = bin[b, FLOOR] == -np.inf
+        if not guessed:
+            shared = False
+            if first_stretch[b + 1] == first_stretch[b] + 1:
+                first = max(stretch[first_stretch[b], 0] - 1, 0)
+                last = min(stretch[first_stretch[b], 1] + 1, count - 1)
+                guessed = True
+                for c in range(first, last + 1):
+                    guessed = guessed and not corner[c] and bin[b, CEILING] <= cells.convex[c]
+                s = 0.5 * (node[first] + node[last + 1])
+        bin[b, FINAL_STEP] = -1.0
+        if not guessed:
+            continue
+        s_a, slope_a, Y_a, tilt_a, under = s_b, slope_b, Y_b, tilt_b, behind
+        if not shared:
+            s_a, slope_a, Y_a, tilt_a, under = _above(cells, edges[b], s, behind, first, last, radius)
+        s_b, slope_b, Y_b, tilt_b, behind = _above(cells, edges[b + 1], s_a, under, first, last, radius)
+        rise, shared = s_b - s_a, last - first == count - 1
+        bin[b, GUESS], bin[b, GUESS + 1] = s_a, slope_a * width
+        bin[b, GUESS + 2] = 3 * rise - (2 * slope_a + slope_b) * width
+        bin[b, GUESS + 3] = (slope_a + slope_b) * width - 2 * rise
+        bin[b, GUESS_Y], bin[b, GUESS_Y + 1] = Y_a, Y_b - Y_a
+        bin[b, TILT], bin[b, TILT + 1] = tilt_a, tilt_b - tilt_a
+        bin[b, GUESS_CELL] = under
+        final = last_step[behind]
+        for c in range(max(min(under, behind) - 1, 0), min(max(under, behind) + 2, count)):
+            final = min(final, last_step[c])
+        bin[b, FINAL_STEP] = final
+
+
+@inlined
+def _above(cells, x, s, under, first, last, radius):
+    """The contact, among cells first…last, of a wheel at x that has sunk in a little, from s by Newton's method:
+    (s, ∂s/∂x, the centre's height Y, ∂s/∂Y, cell). The cell is sought from `under` on.
+    """
+    node, d = cells.node, (1.0 - SINKING) * radius
+    h, h1, h2, slope, length = 0.0, 0.0, 0.0, 1.0, 1.0
+    for _ in range(8):  # on: the point d along the normal at s lies at x
+        s = min(max(s, node[first]), node[last + 1])
+        while under > first and s < node[under]:
+            under -= 1
+        while under < last and s >= node[under + 1]:
+            under += 1
+        h, h1, h2, _h3 = _height(cells.coefficients, under, s - node[under])
+        length = np.sqrt(1.0 + h1 * h1)
+        slope = 1.0 / (1.0 - d * h2 / length**3)
+        step = (s - d * h1 / length - x) * slope
+        s -= step
+        if abs(step) < 1e-9:
+            break
+    return s, slope, h + d / length, h1 / (1.0 + h1 * h1 - d * h2 / length), under
 
 
 @inlined

@@ -10,7 +10,7 @@ from scipy.signal import welch
 
 from model.random_road import HIGHEST, LOWEST, density, highest
 from model.road import Road, build_road
-from model.road_search import FLOOR
+from model.road_search import FINAL_STEP, FLOOR
 from tests.model.nearest import assert_nearest, centres_near
 from tests.model.support import PAPER, WHEELS
 
@@ -90,7 +90,9 @@ def test_nearest_point_on_random_roads(roughness_class):
 
 
 def test_the_rough_classes_need_the_search():
-    """Above, both ways to the nearest point are judged: one minimum only, and the lowest of several."""
+    """Above, all ways to the nearest point are judged: one minimum, one in the only stretch that can hold the nearest
+    point, and the lowest of several.
+    """
     safe = {letter: rough(letter).table.safe.mean() for letter in "BH"}
     assert safe["B"] > 0.9
     assert safe["H"] < 0.2
@@ -99,6 +101,9 @@ def test_the_rough_classes_need_the_search():
     assert searched.mean() > 0.5
     cells = (table.stretch[:, 1] - table.stretch[:, 0] + 1).sum() / searched.sum()
     assert cells < 10  # of some twenty under a wheel
+    guessed = table.bin[:, FINAL_STEP] > 0.0
+    assert 0.5 < (guessed & ~table.safe).mean() < 0.9
+    assert (~guessed).mean() > 0.1
 
 
 def test_a_first_guess_that_leads_astray_is_not_trusted():
