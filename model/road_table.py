@@ -32,7 +32,7 @@ from model.road_search import (
 
 REACH = 1.5  # half-width of the table's search window, in wheel radii
 CELLS_PER_RADIUS = 8  # on level stretches, so that no minimum hides inside a long cell
-SAFE = 0.15  # least curvature of D/2 that counts as "one minimum only"
+SAFE = 0.05  # least curvature of D/2 that counts as "one minimum only"
 SEARCHED = 0.2  # of the radius: how deep a wheel may sink in until all cells about it are searched
 NARROWEST_BIN = 1 / 32  # of the radius
 SINKING = 0.04  # of the radius: how deep a wheel is taken to have sunk in for a first guess of its contact point

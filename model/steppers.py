@@ -26,7 +26,7 @@ NUDGE = 1e-6  # m, rad, m/s or rad/s: a change small enough for the system to be
 SIZE_OF_SPEED = 1.0  # m/s or rad/s, what rtol is measured against: see error_scale
 SIZE_OF_POSITION = 0.1  # m or rad
 SIZE_OF_DISPLACEMENT = 0.1  # m
-LIVELY = 0.5  # m/s: where a body rises or falls faster than this, errors may be larger in proportion
+LIVELY = 0.75  # m/s: where a body rises or falls faster than this, errors may be larger in proportion
 
 
 class Status(IntEnum):

@@ -78,7 +78,7 @@ def measure() -> dict[str, tuple[float, str]]:
 
 
 def _ratio(config: Config, changes: dict[str, object]) -> float:
-    """Time of a run on another road to that on the paper's, each pair right after another; both roads' tables are kept."""
+    """Time of a run on another road to that on the paper’s, each right after the other; the tables of both are kept."""
     other = config.replace(changes)
     simulate(other)
     ratios = []
