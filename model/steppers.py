@@ -243,7 +243,7 @@ STRETCHED = Tableau(
 
 
 @compiled
-def adaptive(tableau, lanes, road, work, samples, clock, rate, t_end, t_stop, scale, longest, k, y, y_new, sample):
+def adaptive(tableau, lanes, road, work, samples, clock, rate, t_end, t_stop, over_scale, longest, k, y, y_new, sample):
     """Steps until t ≥ t_stop; k (7, size) holds the stages, k[0] the derivative at y (first same as last)."""
     size, states = len(y), 6 * len(lanes.place) + len(lanes.xi_place) + 1  # the latter without empty lanes
     time, count = clock.time, clock.tally
@@ -274,6 +274,12 @@ def adaptive(tableau, lanes, road, work, samples, clock, rate, t_end, t_stop, sc
             elif stage == 3:
                 for i in range(size):
                     y_new[i] = y[i] + h * (w1 * k1[i] + w2 * k2[i] + w3 * k3[i])
+            elif stage == 4:
+                for i in range(size):
+                    y_new[i] = y[i] + h * (w1 * k1[i] + w2 * k2[i] + w3 * k3[i] + w4 * k4[i])
+            elif stage == 5:
+                for i in range(size):
+                    y_new[i] = y[i] + h * (w1 * k1[i] + w2 * k2[i] + w3 * k3[i] + w4 * k4[i] + w5 * k5[i])
             else:
                 for i in range(size):
                     y_new[i] = y[i] + h * (w1 * k1[i] + w2 * k2[i] + w3 * k3[i] + w4 * k4[i] + w5 * k5[i] + w6 * k6[i])
@@ -282,7 +288,7 @@ def adaptive(tableau, lanes, road, work, samples, clock, rate, t_end, t_stop, sc
         error = 0.0
         for i in range(size):
             e = e1 * k1[i] + e2 * k2[i] + e3 * k3[i] + e4 * k4[i] + e5 * k5[i] + e6 * k6[i] + e7 * k7[i]
-            square = (e / scale[i]) ** 2
+            square = (e * over_scale[i]) ** 2
             error += square * square
         error = h * np.sqrt(np.sqrt(error / states)) / liveliness(lanes, y)
 
