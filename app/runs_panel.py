@@ -12,7 +12,7 @@ import viser
 from app.callbacks import by_user
 from app.comparison import comparison_table
 from app.history import Kept
-from model.ride import comparison
+from app.load_unit import comparison_rows
 from model.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ class RunsPanel:
 
     def compare(self, now: Trajectory, baseline: Trajectory | None) -> None:
         """Show the figures of a run of at least one sample, and those of the baseline."""
-        rows = comparison(now, baseline)
+        rows = comparison_rows(now, baseline)
         self._figures.content = comparison_table(rows, baseline is not None)
 
     def show(self, runs: Iterable[Kept], name: str, now: Kept | None, baseline: Kept | None) -> None:

@@ -105,8 +105,8 @@ def named(wish: Wish) -> str:
 
 def test_runs_on_new_roads_have_short_names() -> None:
     wish = Wish(PAPER, {"road.type": "profile", "road.points": "5 0, 6 0.1, 9 0"})
-    assert named(wish) == "Road type sine → profile, Profile automatic → 3 points, 4 m long, 0.1 m high"
-    assert named(Wish(PAPER, with_part(PAPER, "step"))).endswith("Parts automatic → sine + step")
+    assert named(wish) == "Road type sine → profile, Profile 3 points, 4 m long, 0.1 m high"
+    assert named(Wish(PAPER, with_part(PAPER, "step"))).endswith("Parts sine + step")
 
 
 # Profiles
@@ -160,7 +160,9 @@ def test_side_view_has_the_road_and_the_wheels_to_scale() -> None:
     assert y.min() >= 0
     assert y.max() <= HEIGHT
     assert view.count("<circle") == 2
-    assert re.findall(r">(-?\d+) m<", view) == ["10", "20", "30", "40", "50"]
+    assert re.findall(r">(-?\d+) m<", view) == ["20", "30", "40"]  # at the ends they would be cut
+    told = float(re.search(r"enlarged (\S+) times", view)[1])  # type: ignore[index]
+    assert told == pytest.approx(-slope / (WIDTH / (BEHIND + AHEAD)), rel=0.05)
 
 
 def test_side_view_follows_time_on_one_scale() -> None:
