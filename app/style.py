@@ -51,6 +51,7 @@ PAGE = """<img hidden src="data:," onerror="
     --trackride-bad: #ff8787; --trackride-more: #ff9d5c; --trackride-less: #74b9ff; }
   :root[data-mantine-color-scheme="dark"] [role="tab"] {
     --mantine-primary-color-filled: var(--mantine-primary-color-4); }
+  .mantine-Slider-markLabel, .mantine-Notification-description { color: var(--mantine-color-dimmed); }
   [data-trackride="page"] + div, [data-trackride="page"] + div + div { display: none; }
   [data-trackride="panel"] { padding-right: 4px; }
   [data-trackride="panel"] div[style*="flex-shrink: 0"] { width: 9.6em !important; }

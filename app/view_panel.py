@@ -9,6 +9,7 @@ import viser
 
 from app.callbacks import by_user
 from app.load_colours import RAMP
+from app.load_map import ticks
 from app.load_unit import LoadUnit
 from app.marks import TRACTION_SCALE
 
@@ -112,11 +113,15 @@ class ViewPanel:
 
 def load_scale(top: float, unit: LoadUnit) -> str:
     """HTML of the ramp of load colours up to `top`, N, with its ticks in that unit."""
-    ticks = "".join(f"<span>{share * top / unit.newtons:.0f}</span>" for share in (0.0, 0.25, 0.5, 0.75, 1.0))
+    highest = top / unit.newtons
+    marks = "".join(
+        f'<span style="position: absolute; left: {100 * tick / highest:.2f}%; translate: -50%">{tick:g}</span>'
+        for tick in ticks(0.0, highest, 4)
+    )
     return (
         f'<div style="padding: 0 0.8em 0.5em; font-size: 0.8em">Normal load, {unit.name}'
         f'<div style="height: 0.8em; background: linear-gradient(to right, {", ".join(RAMP)})"></div>'
-        f'<div style="display: flex; justify-content: space-between">{ticks}</div></div>'
+        f'<div style="position: relative; height: 1.6em">{marks}</div></div>'
     )
 
 
