@@ -208,8 +208,8 @@ def differences(before: Config, after: Config) -> list[str]:
         if parameter.kind != "text" and parameter.applies_to(after.road.type) and old.get(key) != new.get(key)
     ]
     return [
-        _difference(before.parameter(key), old[key], after.parameter(key), new.get(key))
-        if key in old
+        _difference(before.parameter(key), old.get(key), after.parameter(key), new.get(key))
+        if PARAMETER[key].applies_to(before.road.type)
         else _named(after.parameter(key), new.get(key))
         for key in changed
     ]
@@ -228,7 +228,7 @@ def _difference(before: Parameter, old: Any, after: Parameter, new: Any) -> str:
 
 def _words(parameter: Parameter, value: Any) -> str:
     if value is None:
-        return "automatic"
+        return "left out"
     if isinstance(value, bool):
         return "on" if value else "off"
     return choice_words(value) if parameter.kind == "choice" else shown_text(parameter, value)

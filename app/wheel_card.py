@@ -95,7 +95,7 @@ def _figure(value: float | None, digits: int, unit: str) -> str:
 STYLE = """<style>
   div:has(+ div > .trackride-wheel) { float: right; margin: 0.35em 0.6em 0 0; }
   div:has(+ div > .trackride-wheel) button { height: 1.8em !important; padding: 0 0.8em; font-size: 0.75em;
-    --button-bg: #5c6670; --button-hover: #495057; }
+    background: #5c6670 !important; }
   .trackride-wheel { padding: 0 0.9em; font-size: 0.8em; line-height: 1.4; }
   .trackride-wheel p { margin: 0 0 0.35em; line-height: 2; white-space: nowrap; }
   .trackride-wheel i { display: inline-block; width: 0.8em; height: 0.8em; border-radius: 50%; margin-right: 0.5em; }
