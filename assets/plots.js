@@ -41,9 +41,9 @@ if (!window.trackridePlots) {
       const on = x[idx] < now ? idx + 1 : idx - 1, part = (now - x[idx]) / (x[on] - x[idx]), other = chart.data[k][on];
       if (part > 0 && Number.isFinite(other)) value += part * (other - value);
     }
-    const {min, max} = chart.scales.y, top = Math.max(Math.abs(min), Math.abs(max));
+    const {min, max} = chart.scales.y;
     const most = name === '' ? 2 : 4;  // decimals that the values have
-    const digits = Math.min(Math.max(4 - Math.ceil(Math.log10(top)), 0), most);  // four figures that count
+    const digits = Math.min(Math.max(Math.ceil(3 - Math.log10(max - min)), 0), most);  // to a thousandth of the axis
     return (Number(value.toFixed(digits)) + 0).toFixed(digits);  // no minus before zero
   };
   const zoom = (chart) => {
