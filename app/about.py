@@ -118,6 +118,6 @@ def _row(parameter: Parameter) -> str:
 
 
 def _default(parameter: Parameter) -> str:
-    """With its unit; in brackets where it is computed from others."""
+    """With its unit; in brackets where it is left out."""
     text = value_text(parameter, parameter.default)
     return text if parameter.default is not None or not parameter.shown_unit else f"{text} ({parameter.shown_unit})"

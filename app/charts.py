@@ -17,6 +17,7 @@ FADED = "38"
 WIDTH = 1  # px; the page makes 1.5 of it where a line is not pale (plots.js)
 DASH = {"baseline": (4, 3), "static": (1, 3)}
 KEY = {"static": "dotted: at rest", "baseline": "dashed: baseline"}
+GRID = "#80808030"  # on light ground and on dark
 TICKS: viser.uplot.Axis_Ticks = {"size": 4, "width": 1}
 NUDGE = 1e-9  # s. A chart misses a new size that comes with new data, and works out its axes when the range changes.
 PADDING = (12, 18, 0, 0)  # px; less on top would cut the highest tick's label
@@ -64,7 +65,7 @@ class Charts:
 
     def _chart(self, plot: Plot, with_axis: bool) -> viser.GuiUplotHandle:
         low, high = ({"soft": bound, "mode": 1} for bound in plot.least) if plot.least else ({}, {})
-        axis: viser.uplot.Axis = {"font": FONT, "ticks": TICKS, "grid": {"width": 1}}
+        axis: viser.uplot.Axis = {"font": FONT, "ticks": TICKS, "grid": {"width": 1, "stroke": GRID}}
         named: viser.uplot.Axis = {"labelFont": FONT, "labelSize": AXIS_NAME, "labelGap": 0}
         along, upright = axis | {"size": 24}, axis | named | {"size": 40, "space": 18, "label": plot.unit}
         kinds = {curve.kind for curve in plot.curves}

@@ -35,7 +35,7 @@ FIGURES = (
         "peak of up and down / its rms: over 9, the rms tells too little",
         lambda of: of.crest_factor,
     ),
-    Figure("VDV", "m/s^1.75", "dose of up and down: it tells jolts, and grows with time", lambda of: of.dose, True),
+    Figure("VDV", "m/s¹·⁷⁵", "dose of up and down: it tells jolts, and grows with time", lambda of: of.dose, True),
     Figure("MTVV", "m/s²", "rms of the worst second of up and down", lambda of: of.transient),
     Figure(
         "Absorbed power",

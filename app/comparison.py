@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 from collections.abc import Sequence
 
+from app.load_unit import heading
 from model.ride import AIR_TIME, LOAD_COEFFICIENT, LOAD_PEAK, LOAD_RMS, TRAVEL, Row
 
 PAIRS = (
@@ -25,7 +26,7 @@ def comparison_table(rows: Sequence[Row], compared: bool) -> str:
     tables = [_table(["Whole vehicle", *heads], [[_whole_label(row), *cells(row, compared)] for row in whole])]
     for pair in PAIRS:
         over = "<tr><th></th>" + "".join(
-            f'<th colspan="{len(heads)}">{html.escape(f"{figure.label}, {figure.unit}")}</th>' for figure in pair
+            f'<th colspan="{len(heads)}">{html.escape(heading(figure.label, rows))}</th>' for figure in pair
         )
         lines = [
             [

@@ -53,6 +53,7 @@ class Desk:
         self._good_at = 0.0  # when it came, s
         self._rested = False  # the user has rested on it
         self._kept: Kept | None = None  # the same, once it is kept
+        self._before_drive = ""  # name of the run whose figures stay while a drive is shown
         self._baseline: Kept | None = None
         self._compared = self._named = True  # the table of figures, and the name, are those of the run that is shown
         self._compared_at = 0.0  # when it was made, s
@@ -75,7 +76,7 @@ class Desk:
     def finished(self, done: Finished, now: float) -> None:
         """A run is shown, at `now`, s."""
         fresh = self._good is None or not same(self._good.wish, done.wish)
-        self._good, self._good_at, self._rested = done, now, False
+        self._good, self._good_at, self._rested, self._before_drive = done, now, False, ""
         self._complete(done.trajectory)
         self._kept = self._runs.find(done.trajectory.config)
         self._compared = False
@@ -84,7 +85,9 @@ class Desk:
 
     def driven(self, wish: Wish, now: float) -> None:
         """A drive is shown, at `now`, s."""
-        self._good = self._kept = None
+        if self._good is not None:
+            self._before_drive, self._good, self._kept = self._name, None, None
+            self._show()
         self._came_true(wish, now)
 
     def tick(self, now: float) -> None:
@@ -219,7 +222,7 @@ class Desk:
         return "" if self._good is None else run_name(self._good.wish.base, self._good.trajectory.config)
 
     def _show(self) -> None:
-        self._window.runs.show(self._runs, self._name, self._kept, self._baseline)
+        self._window.runs.show(self._runs, self._name, self._kept, self._baseline, self._before_drive)
 
     def _tell(self, now: float) -> None:
         """Say of the run that is shown what has not been said yet."""

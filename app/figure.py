@@ -14,8 +14,9 @@ from PIL import Image
 from app.colours import Palette, wheel_palette
 from app.figure_page import ALARM, DPI, GREY, HEIGHT, INK, MARGIN, WIDTH, Page, plain
 from app.figure_tables import Tables
+from app.load_unit import LoadUnit, comparison_rows, load_unit
 from app.side_view import draw_side_view
-from model.ride import comparison, warnings
+from model.ride import warnings
 from model.trajectory import Trajectory, wheel_names
 
 LEFT, RIGHT = 5.25, 5.2  # inches, like all lengths: widths of the columns, picture and plots; tables
@@ -65,7 +66,7 @@ def compose(
     colours = dict(zip(wheel_names(trajectory.system), palette.wheels, strict=True))
     tables = Tables(page, WIDTH - MARGIN - RIGHT, TOP - 0.06, BOTTOM, RIGHT)
     tables.draw(
-        comparison(trajectory, baseline), colours, trajectory.config, None if baseline is None else baseline.config
+        comparison_rows(trajectory, baseline), colours, trajectory.config, None if baseline is None else baseline.config
     )
     _foot(page, trajectory)
     return page
@@ -113,11 +114,11 @@ def _plots(
 ) -> None:
     """Loads of road wheels and of imaginary wheels, if there are any, and the hull's acceleration, over time."""
     names = wheel_names(trajectory.system)
-    n = trajectory.system.n
+    n, unit = trajectory.system.n, load_unit(trajectory.system)
     plots: list[tuple[str, Sequence[str], Sequence[str]]] = [
         ("Vertical acceleration of the hull, m/s²", [HULL], [palette.hull]),
-        ("Normal load of imaginary wheels, kN", names[n:], palette.imaginary),
-        ("Normal load of road wheels, kN", names[:n], palette.road),
+        (f"Normal load of imaginary wheels, {unit.name}", names[n:], palette.imaginary),
+        (f"Normal load of road wheels, {unit.name}", names[:n], palette.road),
     ]
     plots = [plot for plot in plots if plot[1]]
     foot, between, indent = BOTTOM + 0.26, 0.3, 0.4
@@ -125,8 +126,8 @@ def _plots(
     for k, (title, labels, colours) in enumerate(plots):
         axes = page.axes(MARGIN + indent, foot + k * (height + between), LEFT - indent, height)
         if baseline is not None:
-            _draw(axes, baseline, labels, colours, lw=0.7, alpha=0.5, dashes=(3, 1.5))
-        _draw(axes, trajectory, labels, colours, lw=0.8)
+            _draw(axes, baseline, unit, labels, colours, lw=0.7, alpha=0.5, dashes=(3, 1.5))
+        _draw(axes, trajectory, unit, labels, colours, lw=0.8)
         _dress(axes, title, float(trajectory.t[-1]), time)
         if len(labels) > 1:
             _name(axes, labels, colours)
@@ -135,9 +136,11 @@ def _plots(
             axes.set_xlabel("Time, s", fontsize=6.8, color=INK, labelpad=2)
 
 
-def _draw(axes: Axes, run: Trajectory, labels: Sequence[str], colours: Sequence[str], **style: object) -> None:
-    """The curves of those names that the run has."""
-    curves = dict(zip(wheel_names(run.system), run.normal_load.T / 1e3, strict=True))
+def _draw(
+    axes: Axes, run: Trajectory, unit: LoadUnit, labels: Sequence[str], colours: Sequence[str], **style: object
+) -> None:
+    """The curves of those names that the run has, loads in that unit."""
+    curves = dict(zip(wheel_names(run.system), unit.of(run.normal_load.T), strict=True))
     curves[HULL] = run.a[:, run.system.chassis, 1]
     for label, colour in zip(labels, colours, strict=True):
         if label in curves:

@@ -6,6 +6,7 @@ from typing import Any
 
 from app.comparison import change_text, figure_text
 from app.figure_page import BAND, GREY, MARKED, Page, plain
+from app.load_unit import heading
 from app.parameter_text import value_text
 from model.config import Config
 from model.parameters import NOTES, PARAMETER, Parameter
@@ -104,7 +105,8 @@ class Tables:
         offsets = [0.36 * k for k in reversed(range(len(heads)))]
         self._page.write(self._x, self._y, "Wheel", SUBHEAD, weight="bold")
         for right, figure in zip(rights, WHEEL_FIGURES, strict=True):
-            self._page.write(right, self._y, f"{figure.label}, {figure.unit}", SUBHEAD, weight="bold", ha="right")
+            words = heading(figure.label, list(rows.values()))
+            self._page.write(right, self._y, words, SUBHEAD, weight="bold", ha="right")
         if compared:
             self._y -= 0.125
             for right in rights:

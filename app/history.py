@@ -207,7 +207,17 @@ def differences(before: Config, after: Config) -> list[str]:
         for key, parameter in PARAMETER.items()
         if parameter.kind != "text" and parameter.applies_to(after.road.type) and old.get(key) != new.get(key)
     ]
-    return [_difference(before.parameter(key), old.get(key), after.parameter(key), new.get(key)) for key in changed]
+    return [
+        _difference(before.parameter(key), old.get(key), after.parameter(key), new.get(key))
+        if PARAMETER[key].applies_to(before.road.type)
+        else _named(after.parameter(key), new.get(key))
+        for key in changed
+    ]
+
+
+def _named(parameter: Parameter, value: Any) -> str:
+    """A value that there was not before: another type of road brings it along."""
+    return f"{parameter.label} {_words(parameter, value)} {parameter.shown_unit}".rstrip()
 
 
 def _difference(before: Parameter, old: Any, after: Parameter, new: Any) -> str:
@@ -218,7 +228,7 @@ def _difference(before: Parameter, old: Any, after: Parameter, new: Any) -> str:
 
 def _words(parameter: Parameter, value: Any) -> str:
     if value is None:
-        return "automatic"
+        return "left out"
     if isinstance(value, bool):
         return "on" if value else "off"
     return choice_words(value) if parameter.kind == "choice" else shown_text(parameter, value)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import viser
 
+from app.load_unit import LoadUnit
 from app.nodes import VEHICLE, Frame, update
 from assets.layout import Layout
 
@@ -29,7 +30,7 @@ class WheelLabels:
         self._labels = [api.add_label(f"{name}/{text}", text, anchor="center-center") for text in self._names]
         self._texts = self._names
         ahead = (layout.front + UNIT_AHEAD * self._scale, self._y, -WITH_LOADS[0] * self._scale)
-        self._unit = api.add_label(f"{name}/unit", "kN", position=ahead, anchor="center-center", visible=False)
+        self._unit = api.add_label(f"{name}/unit", "", position=ahead, anchor="center-center", visible=False)
         self._with_loads = False
         self._arrange()
 
@@ -40,10 +41,12 @@ class WheelLabels:
             self._with_loads = loads
             self._arrange()
 
-    def write(self, load: np.ndarray) -> None:
-        """Say these loads (W,), N, in the model's order, if loads are shown."""
+    def write(self, load: np.ndarray, unit: LoadUnit) -> None:
+        """Say these loads (W,), N, in the model's order, in that unit, if loads are shown."""
         if self._with_loads:
-            self._say([f"{name}\n{load_text(own)}" for name, own in zip(self._names, load, strict=True)])
+            if self._unit.text != unit.name:
+                self._unit.text = unit.name
+            self._say([f"{name}\n{load_text(own, unit)}" for name, own in zip(self._names, load, strict=True)])
 
     def move(self, x: float, lowest: float) -> None:
         """Stand under the vehicle at x in the view, m, on a road with this lowest point."""
@@ -65,6 +68,6 @@ class WheelLabels:
         self._texts = texts
 
 
-def load_text(load: float) -> str:
-    """kN with one decimal, as wide as the largest: " 8.9"."""
-    return f"{load / 1e3:.1f}".rjust(4, FIGURE_SPACE)
+def load_text(load: float, unit: LoadUnit) -> str:
+    """A load, N, without its unit, as wide as the largest: " 8.9"."""
+    return f"{load / unit.newtons:.1f}".rjust(4, FIGURE_SPACE)

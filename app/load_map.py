@@ -9,13 +9,14 @@ import numpy as np
 from PIL import Image
 
 from app.load_colours import RAMP, load_colours
+from app.load_unit import load_unit
 from app.markup import page
 from app.plots import at_times
 from model.trajectory import Trajectory, wheel_names
 
 COLUMNS = 600, 4000  # of a picture at most: about as many as it has pixels on the page, and to be looked at near by
 TICKS = 5  # of an axis, at least; twice as many at most
-LEAST_TOP = 1e-3  # kN, of a colour bar
+LEAST_TOP = 1e-3  # of a colour bar, in the loads' unit
 READING = (
     "Front wheel on top; empty where a wheel is in the air. Bands that slant down to the right pass from the front "
     "wheel to the rear one. Drag to zoom in, double-click to see all."
@@ -31,15 +32,15 @@ def load_map(run: Trajectory, baseline: Trajectory | None = None) -> str:
     if not len(run.t):
         return page("<p>This run has no samples.</p>")
     runs = [("", run)] + ([(", baseline", baseline)] if baseline is not None and len(baseline.t) else [])
-    maps = []
+    maps, unit = [], load_unit(run.system)
     for family, letter in (("road", "R"), ("imaginary", "I")):
         shown = []
         for whose, of in runs:
             names = wheel_names(of.system)
             wheels = [w for w, name in enumerate(names) if name.startswith(letter)]
             if wheels:
-                load = at_times(run.t, of.t, of.normal_load[:, wheels] / 1e3)
-                shown.append((f"Normal load of {family} wheels, kN{whose}", load, [names[w] for w in wheels]))
+                load = at_times(run.t, of.t, unit.of(of.normal_load[:, wheels]))
+                shown.append((f"Normal load of {family} wheels, {unit.name}{whose}", load, [names[w] for w in wheels]))
         top = max((np.nanmax(load, initial=LEAST_TOP) for _, load, _ in shown), default=LEAST_TOP)
         maps += [(title, load, names, float(top)) for title, load, names in shown]
     rows = sum(len(names) for _, _, names, _ in maps)
@@ -52,7 +53,7 @@ def load_map(run: Trajectory, baseline: Trajectory | None = None) -> str:
 
 
 def _map(title: str, load: np.ndarray, names: list[str], top: float, share: float) -> str:
-    """load: (N, K) kN, a column for each name, NaN for unknown; top: of the colours, kN; share: of the height."""
+    """load: (N, K), a column for each name, NaN for unknown; top: of the colours; share: of the height."""
     far, near = (_picture(load, top, columns) for columns in COLUMNS)
     loads = "".join(
         f'<span style="bottom:{100 * tick / top:.3f}%">{tick:g}</span>' for tick in ticks(0.0, top, 2 * TICKS * share)

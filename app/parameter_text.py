@@ -7,9 +7,9 @@ from model.parameters import Parameter, Value
 
 
 def value_text(parameter: Parameter, value: Value) -> str:
-    """A value with its unit: "75.53 kN/m"; "computed" for one that follows from others."""
+    """A value with its unit: "75.53 kN/m"; "left out" for one that follows from others or is not there."""
     if value is None:
-        return "computed"
+        return "left out"
     if isinstance(value, bool):
         return "yes" if value else "no"
     if parameter.kind == "choice":

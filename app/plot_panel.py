@@ -23,8 +23,8 @@ from app.load_map import load_map
 from app.plot_page import now_html, plot_page, tab_html
 from app.plots import Plot, load_plots
 from app.ride_plots import ride_plots
-from app.screen import chart_height
-from app.spectrum_panel import Analyst, SpectrumPanel
+from app.screen import chart_height, spectrum_height
+from app.spectrum_panel import BELOW_CHART, Analyst, SpectrumPanel
 from app.trust import errata_html, trust_html
 from model.road import Road
 from model.trajectory import Trajectory
@@ -69,9 +69,9 @@ class PlotPanel:
             with tab:
                 gui.add_html(tab_html(name), order=float("-inf"))
         self._stretches: dict[str, Any] = {}
-        for name in (SPECTRUM, LOAD_MAP, TRUST):
+        for name, order in ((SPECTRUM, BELOW_CHART), (LOAD_MAP, -1.0), (TRUST, -1.0)):
             with tabs[name]:
-                self._stretches[name] = gui.add_html("", order=-1.0)
+                self._stretches[name] = gui.add_html("", order=order)
         with tabs[RIDE]:
             self._headline = gui.add_html("")
             self._comfort = gui.add_html("", order=float("inf"))
@@ -214,8 +214,7 @@ class PlotPanel:
 
     def _show_spectrum(self, run: Trajectory) -> None:
         colour = wheel_palette(1, 0, self._dark).hull
-        height = chart_height(self._page_height, 2)
-        self.spectrum.show(run, self._baseline, colour, height)
+        self.spectrum.show(run, self._baseline, colour, spectrum_height(self._page_height))
         self._say_stretch(SPECTRUM, run)
 
     def _show_map(self, run: Trajectory) -> None:
@@ -227,10 +226,13 @@ class PlotPanel:
         self._say_stretch(TRUST, run)
 
     def _say_stretch(self, tab: str, run: Trajectory) -> None:
-        self._stretches[tab].content = stretch_html(run) if self._driving else ""
+        self._stretches[tab].content = stretch_html(run, above=tab == SPECTRUM) if self._driving else ""
 
 
-def stretch_html(run: Trajectory) -> str:
-    """HTML that says which stretch of a drive a tab shows; what comes below does not move for it."""
+def stretch_html(run: Trajectory, *, above: bool) -> str:
+    """HTML that says which stretch of a drive a tab shows.
+
+    It stands at the right end of the line above or below, which has room there: nothing moves for it.
+    """
     words = f"The drive from {run.t[0]:.1f} s to {run.t[-1]:.1f} s"
-    return f'<div class="trackride-stretch"><span>{words}</span></div>'
+    return f'<div class="trackride-stretch{" above" if above else ""}"><span>{words}</span></div>'

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Literal
 
 import numpy as np
 
 from app.colours import Palette
+from app.load_unit import LoadUnit, load_unit
 from app.thinning import thin
 from model.trajectory import Trajectory
 
-DECIMALS = 2  # of the values that are plotted and read
-SMALL = 0.5  # kN on a wheel: the loads of such a vehicle need more decimals
+DECIMALS = 2  # of the values that are plotted; the page tells no more (plots.js)
 TIME = "Time, s"
 
 
@@ -51,29 +52,29 @@ class Plot:
 def load_plots(
     run: Trajectory, palette: Palette, baseline: Trajectory | None = None, wheel: int | None = None
 ) -> tuple[Plot, ...]:
-    """Normal load of road wheels and of imaginary wheels, kN, and the imaginary wheels' share of it, %.
+    """Normal load of road wheels and of imaginary wheels, in the vehicle's unit, and the imaginary ones' share, %.
 
     A baseline adds its curves, one for each wheel that the run has too. A wheel that is singled out leaves the others
     faded. A dotted line marks the load at rest: of that wheel, or the wheels' mean. A vehicle without imaginary wheels
     has no plots of theirs.
     """
     n, m = run.system.n, run.system.m
-    wheel_weight = float(run.system.weight.sum()) / (n + m) / 1e3
-    decimals = DECIMALS if wheel_weight > SMALL else DECIMALS + 2
-    families = [("Normal load of road wheels", wheel_curves("R", palette.road, 0, wheel), _road_loads)]
+    unit = load_unit(run.system)
+    wheel_weight = float(run.system.weight.sum()) / (n + m)
+    families = [("Normal load of road wheels", wheel_curves("R", palette.road, 0, wheel), partial(_road_loads, unit))]
     if m:
-        families += [("Normal load of imaginary wheels", wheel_curves("I", palette.imaginary, n, wheel), _other_loads)]
+        imaginary = wheel_curves("I", palette.imaginary, n, wheel)
+        families += [("Normal load of imaginary wheels", imaginary, partial(_other_loads, unit))]
     plots = [
         time_plot(
             title,
-            "kN",
-            (0.0, wheel_weight),
+            unit.name,
+            (0.0, wheel_weight / unit.newtons),
             curves,
             values,
             run,
             baseline,
-            at_rest=_at_rest(run, curves, palette.hull),
-            decimals=decimals,
+            at_rest=_at_rest(run, unit, curves, palette.hull),
         )
         for title, curves, values in families
     ]
@@ -100,7 +101,6 @@ def time_plot(
     run: Trajectory,
     baseline: Trajectory | None = None,
     at_rest: tuple[float, Curve] | None = None,
-    decimals: int = DECIMALS,
 ) -> Plot:
     """A plot over time. values: run -> (N, C), a column for each curve; at_rest: a dotted line and its height."""
     shown = values(run)
@@ -121,7 +121,7 @@ def time_plot(
         height, line = at_rest
         curves = [*curves, line]
         thinned = np.vstack([thinned.T, np.full(len(time), height)]).T
-    return Plot(title, unit, tuple(curves), least, time, np.round(thinned, decimals))
+    return Plot(title, unit, tuple(curves), least, time, np.round(thinned, DECIMALS))
 
 
 def at_times(t: np.ndarray, own: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -133,22 +133,22 @@ def at_times(t: np.ndarray, own: np.ndarray, values: np.ndarray) -> np.ndarray:
     return columns
 
 
-def _at_rest(run: Trajectory, curves: list[Curve], colour: str) -> tuple[float, Curve]:
-    """Load at rest, kN, of the family's wheel that is singled out, in its colour, or the wheels' mean in `colour`."""
+def _at_rest(run: Trajectory, unit: LoadUnit, curves: list[Curve], colour: str) -> tuple[float, Curve]:
+    """Load at rest of the family's wheel that is singled out, in its colour, or the wheels' mean in `colour`."""
     clear = [curve for curve in curves if not curve.faded]
     loads = [run.static_load[curve.wheel] for curve in clear or curves if curve.wheel is not None]
     shade = clear[0].colour if len(clear) == 1 else colour
-    return float(np.mean(loads)) / 1e3, Curve("at rest", shade, "static", faded=not clear)
+    return float(np.mean(loads)) / unit.newtons, Curve("at rest", shade, "static", faded=not clear)
 
 
-def _road_loads(run: Trajectory) -> np.ndarray:
-    """(N, n), kN."""
-    return run.normal_load[:, : run.system.n] / 1e3
+def _road_loads(unit: LoadUnit, run: Trajectory) -> np.ndarray:
+    """(N, n)."""
+    return unit.of(run.normal_load[:, : run.system.n])
 
 
-def _other_loads(run: Trajectory) -> np.ndarray:
-    """(N, m), kN."""
-    return run.normal_load[:, run.system.n :] / 1e3
+def _other_loads(unit: LoadUnit, run: Trajectory) -> np.ndarray:
+    """(N, m)."""
+    return unit.of(run.normal_load[:, run.system.n :])
 
 
 def _share(run: Trajectory) -> np.ndarray:

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from app.comfort_page import FIGURES, PLACES
 from app.comparison import NONE, figure_text
 from app.export import file_name
+from app.load_unit import comparison_rows, heading
 from app.markup import formula_html, words_html
 from app.modes_page import NOTE, moving
 from app.page import Html, document, element, joined, picture, table
@@ -139,8 +140,9 @@ def _warnings(run: Trajectory) -> Html:
 
 
 def _wheels(run: Trajectory) -> Html:
-    rows = {(row.wheel, row.figure): figure_text(row.now) for row in comparison(run, None) if row.wheel}
-    heads = ["Wheel", *(f"{figure.label}, {figure.unit}" for figure in WHEEL_FIGURES)]
+    told = comparison_rows(run, None)
+    rows = {(row.wheel, row.figure): figure_text(row.now) for row in told if row.wheel}
+    heads = ["Wheel", *(heading(figure.label, told) for figure in WHEEL_FIGURES)]
     wheels = dict.fromkeys(wheel for wheel, _ in rows)
     return table(
         heads,

@@ -23,7 +23,7 @@ def ride_plots(
         time_plot("Vertical acceleration of the hull", "m/s²", (-0.5, 0.5), hull, _acceleration, run, baseline),
         time_plot("Pitch of the hull, nose up positive", "degrees", (-0.5, 0.5), hull, _pitch, run, baseline),
         time_plot("Speed", "km/h", None, hull, _speed, run, baseline),
-        time_plot("Suspension travel, up positive", "mm", (-5.0, 5.0), road, _travel, run, baseline, decimals=1),
+        time_plot("Suspension travel, up positive", "mm", (-5.0, 5.0), road, _travel, run, baseline),
     )
 
 

@@ -43,7 +43,7 @@ def without_last(config: Config) -> dict[str, Any]:
 
 
 def parts_text(parts: Sequence[SimpleRoad]) -> str:
-    """A line for each part: "half round: position 8, height 100"; numbers in the units of the panel."""
+    """A line for each part: "half round: position 8 m, height 100 mm"; numbers in the units of the panel."""
     return "\n".join(_line(part) for part in parts)
 
 
@@ -57,11 +57,17 @@ def _line(part: SimpleRoad) -> str:
 
 
 def _shown(name: str, value: Any) -> str:
-    return value if isinstance(value, str) else number_text(shown_number(PARAMETER[f"road.{name}"], value))
+    if isinstance(value, str):
+        return value
+    parameter = PARAMETER[f"road.{name}"]
+    return f"{number_text(shown_number(parameter, value))} {parameter.shown_unit}".rstrip()
 
 
 def parts_from(text: str, present: Sequence[SimpleRoad]) -> tuple[Any, ...]:
-    """The parts that a text means, for the configuration to check; a profile is the one of the present parts."""
+    """The parts that a text, with units or without, means, for the configuration to check.
+
+    A profile is the one of the present parts.
+    """
     profiles = iter([part for part in present if isinstance(part, ProfileRoad)])
     return tuple(_part(line, profiles) for line in text.splitlines() if line.strip())
 
@@ -73,10 +79,16 @@ def _part(line: str, profiles: Any) -> Any:
         return next(profiles, {"type": "profile"})
     part: dict[str, Any] = {"type": road_type}
     for item in filter(str.strip, rest.split(",")):
-        *words, value = item.split() if len(item.split()) > 1 else [item.strip(), ""]
+        *words, value = _without_unit(item.split()) if len(item.split()) > 1 else [item.strip(), ""]
         name = "_".join(words)
         part[name] = _file_value(name, value)
     return part
+
+
+def _without_unit(words: list[str]) -> list[str]:
+    """Name and value, also where the unit of the panel stands behind them."""
+    parameter = PARAMETER.get(f"road.{'_'.join(words[:-2])}")
+    return words[:-1] if parameter is not None and words[-1] == parameter.shown_unit else words
 
 
 def _file_value(name: str, value: str) -> Any:

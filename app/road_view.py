@@ -12,6 +12,8 @@ from model.trajectory import Trajectory
 BEHIND, AHEAD = 10.0, 30.0  # m of road about the hull's centre of mass
 WIDTH, HEIGHT = 400, 84  # of the drawing
 FOOT = 16  # of it, for the distances
+HEADROOM = 8  # of it, for wheels on the highest point
+MARGIN = 2.0  # m from its ends within which a distance's text would be cut
 LINE = 201  # points of the road
 LEAST_SPAN = 0.2  # m of height that are always in view
 
@@ -76,16 +78,17 @@ def road_view(road: Road, span: tuple[float, float], x: float, wheels: np.ndarra
     marks = "".join(
         f'<text x="{(tick - x + BEHIND) / (BEHIND + AHEAD) * WIDTH:.1f}" y="{HEIGHT - 3}">{tick:g} m</text>'
         for tick in ticks(x - BEHIND, x + AHEAD, 4)
+        if x - BEHIND + MARGIN <= tick <= x + AHEAD - MARGIN
     )
-    exaggeration = (HEIGHT - FOOT) / (high - low) * (BEHIND + AHEAD) / WIDTH
+    exaggeration = (HEIGHT - FOOT - HEADROOM) / (high - low) * (BEHIND + AHEAD) / WIDTH
     return (
         f'<figure class="trackride-road"><svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="Road ahead">'
         f'<polygon points="0,{HEIGHT - FOOT} {line} {WIDTH},{HEIGHT - FOOT}"/><polyline points="{line}"/>{dots}{marks}'
-        f"</svg><figcaption>Road ahead, heights {exaggeration:.2g} times</figcaption></figure>"
+        f"</svg><figcaption>Road ahead, heights enlarged {exaggeration:.2g} times</figcaption></figure>"
     )
 
 
 def _up(height: np.ndarray, span: tuple[float, float]) -> np.ndarray:
     """Heights, m, in the drawing, from its top."""
     low, high = span
-    return (high - height) / (high - low) * (HEIGHT - FOOT - 8) + 8
+    return (high - height) / (high - low) * (HEIGHT - FOOT - HEADROOM) + HEADROOM

@@ -12,7 +12,7 @@ import viser
 from app.callbacks import by_user
 from app.comparison import comparison_table
 from app.history import Kept
-from model.ride import comparison
+from app.load_unit import comparison_rows
 from model.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -60,11 +60,14 @@ class RunsPanel:
 
     def compare(self, now: Trajectory, baseline: Trajectory | None) -> None:
         """Show the figures of a run of at least one sample, and those of the baseline."""
-        rows = comparison(now, baseline)
+        rows = comparison_rows(now, baseline)
         self._figures.content = comparison_table(rows, baseline is not None)
 
-    def show(self, runs: Iterable[Kept], name: str, now: Kept | None, baseline: Kept | None) -> None:
-        """Show which runs are kept, which of them is shown (under this name), and which one is the baseline."""
+    def show(self, runs: Iterable[Kept], name: str, now: Kept | None, baseline: Kept | None, before_drive: str) -> None:
+        """Show which runs are kept, which of them is shown (under this name), and which one is the baseline.
+
+        before_drive: name of the run that came last, while a drive is shown that has no figures of its own here.
+        """
         kept = {run.number: run for run in runs}
         for number in self._rows.keys() - kept.keys():
             self._rows.pop(number).remove()
@@ -73,7 +76,7 @@ class RunsPanel:
                 self._rows[number] = self._row(run)
             elif self._rows[number].label != run.name:
                 self._rows[number].label = run.name
-        self._heading.content = _heading(name, now, baseline)
+        self._heading.content = _heading(name, now, baseline, before_drive)
         self._style.content = self._marks(kept.values(), now)
 
     def show_name(self, name: str) -> None:
@@ -116,10 +119,11 @@ class RunsPanel:
         return f'<style class="trackride-runs">{" ".join(rules)}</style>'
 
 
-def _heading(name: str, now: Kept | None, baseline: Kept | None) -> str:
+def _heading(name: str, now: Kept | None, baseline: Kept | None, before_drive: str) -> str:
     """HTML: which run is compared with which."""
+    when, shown = ("Last run", before_drive) if before_drive else ("Now", name)
     compared = HOW_TO if baseline is None else f"<b>Baseline</b> {_named(baseline.name, baseline)}"
-    return f'<div class="trackride-compared"><b>Now</b> {_named(name, now)}<br>{compared}</div>'
+    return f'<div class="trackride-compared"><b>{when}</b> {_named(shown, now)}<br>{compared}</div>'
 
 
 def _named(name: str, run: Kept | None) -> str:

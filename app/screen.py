@@ -9,8 +9,10 @@ RIGHT = 470  # px, width of the plots at least
 WIDEST = 760  # px, width of the plots at most
 SEAMS = 8  # px that viser puts between docked panels and the view
 PLAYER = 560  # px, width of the player at most
+MODES = 485  # px beside the spectrum: three boxes and the table of a paper's vehicle's modes
 PLOTS_HEAD = 66  # px above the plots in their panel
 AXIS_NAME = 16  # px that the name of the axis takes below the last plot
+LOWEST, HIGHEST = 110, 700  # px, of a chart
 CARD = 46  # px that one plot takes beyond its chart: title, legend, margins
 SCALES = (0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.25, 2.5, 3.0, 3.5, 4.0)  # screen pixels for each px
 
@@ -67,4 +69,9 @@ def _layout(view_width: float, page_height: float, right: int) -> Layout:
 
 def chart_height(page_height: int, plots: int) -> int:
     """Height of each of so many charts that together fill a page of this height, px."""
-    return int(min(max((page_height - PLOTS_HEAD - AXIS_NAME) / max(plots, 1) - CARD, 110), 460))
+    return int(min(max((page_height - PLOTS_HEAD - AXIS_NAME) / max(plots, 1) - CARD, LOWEST), HIGHEST))
+
+
+def spectrum_height(page_height: int) -> int:
+    """Height of the spectrum's chart, px: half a page, or all that its boxes and the table of modes leave of it."""
+    return max(chart_height(page_height, 2), chart_height(page_height - MODES, 1))

@@ -20,6 +20,7 @@ from model.trajectory import Trajectory
 AMPLITUDE, DENSITY = "Amplitude, m/s²", "Power density, m²/s³"
 HULL, SEAT = "Centre of mass", "Driver's seat"
 NO_MODE = "– the run –"
+BELOW_CHART = 1e9  # order of what stands there: a chart made anew goes to the end of those without
 
 
 class Analyst(Protocol):
@@ -51,7 +52,7 @@ class SpectrumPanel:
             self._choice: Any = gui.add_dropdown(
                 "Show in 3-D",
                 (NO_MODE,),
-                order=1e9,
+                order=BELOW_CHART + 1,
                 hint="A mode of the vehicle, much enlarged and at one swing a second; the ghost stands at rest. "
                 "Play, or any change, leads back to the run.",
             )

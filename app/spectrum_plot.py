@@ -15,7 +15,7 @@ from model.trajectory import Trajectory
 
 LOWEST_END = 8.0  # Hz: the axis goes this far at least …
 HARMONICS = 3.0  # … and to this many times v/λ
-DECIMALS = 4
+DECIMALS = 4  # of the values that are plotted; the page tells no more (plots.js)
 LEAST_SAMPLES = 8  # of a run that has a spectrum
 
 

@@ -12,6 +12,7 @@ from app.camera import Camera, Tab, View
 from app.colours import DARK, LIGHT, wheel_palette
 from app.ghost import Ghost
 from app.labels import WheelLabels
+from app.load_unit import load_unit
 from app.marks import DEFAULTS, Marks
 from app.nodes import RoadNodes, Surroundings, VehicleNodes
 from app.scene import Scene, build_scene, live_scene
@@ -238,7 +239,7 @@ class Stage:
     def write_loads(self) -> None:
         """Bring the loads at the wheels' names up to date: seldom enough to be read."""
         if self._scene is not None and self._labels is not None and self._labelled["loads"]:
-            self._labels.write(self._scene.loads(self._time))
+            self._labels.write(self._scene.loads(self._time), load_unit(self._scene.system))
 
     def _label(self, **changed: bool) -> None:
         self._labelled |= changed

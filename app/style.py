@@ -14,6 +14,7 @@ BRAND = (28, 108, 178)
 # over boxes only: here also over their labels, and those of plain buttons, which come in `add_hints`.
 # IN_VIEW stands for the hidden checkbox that a page in the background takes its tick from. No :has() in the rules:
 # with it the browser takes eight times as long over each change of the page, and many come in a second.
+# Small text is read at 4.5:1 at least (WCAG 2.2, 1.4.3), which the greys and blues that viser would take do not reach.
 PAGE = """<img hidden src="data:," onerror="
   this.parentElement.dataset.trackride = 'page';
   this.parentElement.parentElement.dataset.trackride = 'panel';
@@ -42,6 +43,15 @@ PAGE = """<img hidden src="data:," onerror="
     });
   }"><p class="trackride-intro">Move a slider: the run is computed anew. Ctrl+K: all keys.</p>
 <style id="trackride-style" data-in-view="IN_VIEW">
+  :root[data-mantine-color-scheme="light"] { --mantine-color-dimmed: #5c6670; --trackride-good: #087f5b;
+    --trackride-bad: #c92a2a; --trackride-more: #b83a0a; --trackride-less: #1864ab;
+    --mantine-color-custom-filled: var(--mantine-color-custom-8); --mantine-color-custom-outline:
+    var(--mantine-color-custom-8); --mantine-color-custom-filled-hover: var(--mantine-color-custom-9); }
+  :root[data-mantine-color-scheme="dark"] { --mantine-color-dimmed: #a3a3a3; --trackride-good: #3fc28f;
+    --trackride-bad: #ff8787; --trackride-more: #ff9d5c; --trackride-less: #74b9ff; }
+  :root[data-mantine-color-scheme="dark"] [role="tab"] {
+    --mantine-primary-color-filled: var(--mantine-primary-color-4); }
+  .mantine-Slider-markLabel, .mantine-Notification-description { color: var(--mantine-color-dimmed); }
   [data-trackride="page"] + div, [data-trackride="page"] + div + div { display: none; }
   [data-trackride="panel"] { padding-right: 4px; }
   [data-trackride="panel"] div[style*="flex-shrink: 0"] { width: 9.6em !important; }
@@ -54,7 +64,7 @@ PAGE = """<img hidden src="data:," onerror="
   .trackride-status { font-size: 0.8em; line-height: 1.5; padding: 0 0.8em 0.5em; white-space: nowrap;
     overflow: hidden; text-overflow: ellipsis; color: var(--mantine-color-dimmed); }
   .trackride-status b { font-weight: 550; color: var(--mantine-color-text); }
-  .trackride-status .bad { color: var(--mantine-color-red-7); }
+  .trackride-status .bad { color: var(--trackride-bad); }
 </style>"""
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 from typing import NamedTuple
 
+from app.load_unit import load_unit
 from app.markup import page, words_html
 from model.energy import energy_balance, load_balance
 from model.errata import ERRATA
@@ -59,14 +60,14 @@ def errata_html() -> str:
 def balances(run: Trajectory) -> list[Check]:
     """What the whole run says about energy and forces."""
     energy, force = energy_balance(run), load_balance(run)
-    system = run.system
+    system, unit = run.system, load_unit(run.system)
     weight = float(system.weight.sum())
     broken = float(abs(force.residual).max()) / weight
     return [
         Check(
             "Energy unaccounted for",
             f"{energy.closing_error:.2g} %" if energy.turned_over > 0 else "–",
-            f"of {_short(energy.turned_over)}J turned over: drive against dampers, ground and friction",
+            f"of {_energy(energy.turned_over)} turned over: drive against dampers, ground and friction",
             energy.closing_error <= CLOSING_LIMIT if energy.turned_over > 0 else None,
         ),
         Check(
@@ -77,8 +78,8 @@ def balances(run: Trajectory) -> list[Check]:
         ),
         Check(
             "Σ contact forces, mean",
-            f"{force.contact_force.mean() / 1e3:.2f} kN",
-            f"weight {weight / 1e3:.2f} kN; they differ by what the hull has gained in upward speed",
+            unit.text(float(force.contact_force.mean())),
+            f"weight {unit.text(weight)}; they differ by what the hull has gained in upward speed",
         ),
     ]
 
@@ -132,5 +133,6 @@ def _row(check: Check) -> str:
     )
 
 
-def _short(joules: float) -> str:
-    return f"{joules / 1e6:.3g} M" if joules >= 1e6 else f"{joules / 1e3:.3g} k"
+def _energy(joules: float) -> str:
+    factor, unit = next(((f, u) for f, u in ((1e6, "MJ"), (1e3, "kJ")) if joules >= f), (1.0, "J"))
+    return f"{joules / factor:.3g} {unit}"

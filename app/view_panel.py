@@ -9,6 +9,8 @@ import viser
 
 from app.callbacks import by_user
 from app.load_colours import RAMP
+from app.load_map import ticks
+from app.load_unit import LoadUnit
 from app.marks import TRACTION_SCALE
 
 VIEWS = {
@@ -34,7 +36,7 @@ SWITCHES = {  # attribute of the stage -> label, whether it is on at first, hint
     "show_load_colours": (
         "Load colours",
         False,
-        "A ring on each wheel in the colour of its normal load f_n, kN; the scale appears below",
+        "A ring on each wheel in the colour of its normal load f_n; the scale appears below",
     ),
     "show_travel": (
         "Travel",
@@ -46,7 +48,7 @@ SWITCHES = {  # attribute of the stage -> label, whether it is on at first, hint
         True,
         "R1… are road wheels, I1… imaginary wheels, front first. Click a wheel for all its figures",
     ),
-    "show_loads": ("Loads in figures", False, "The normal load f_n, kN, under each wheel's name"),
+    "show_loads": ("Loads in figures", False, "The normal load f_n under each wheel's name"),
     "show_scale_bar": ("Scale bar", True, "A round length, under the rear of the vehicle"),
     "show_grid": (
         "Grid",
@@ -96,11 +98,11 @@ class ViewPanel:
         scale.on_update(by_user(_switching(viewer, "arrow_scale"), viewer.fail))
         night.on_update(by_user(lambda event: viewer.set_dark(event.target.value), viewer.fail))
 
-    def show_load_scale(self, top: float | None) -> None:
-        """What the wheels' colours mean, from 0 to `top`, N; None: they mean nothing."""
+    def show_load_scale(self, top: float | None, unit: LoadUnit) -> None:
+        """What the wheels' colours mean, from 0 to `top`, N, told in that unit; None: they mean nothing."""
         self._load_scale.visible = top is not None
         if top is not None:
-            self._load_scale.content = load_scale(top)
+            self._load_scale.content = load_scale(top, unit)
 
     def toggle(self, attribute: str) -> bool:
         """Turn a switch over; its new state."""
@@ -109,13 +111,17 @@ class ViewPanel:
         return box.value
 
 
-def load_scale(top: float) -> str:
-    """HTML of the ramp of load colours up to `top`, N, with its ticks."""
-    ticks = "".join(f"<span>{share * top / 1e3:.0f}</span>" for share in (0.0, 0.25, 0.5, 0.75, 1.0))
+def load_scale(top: float, unit: LoadUnit) -> str:
+    """HTML of the ramp of load colours up to `top`, N, with its ticks in that unit."""
+    highest = top / unit.newtons
+    marks = "".join(
+        f'<span style="position: absolute; left: {100 * tick / highest:.2f}%; translate: -50%">{tick:g}</span>'
+        for tick in ticks(0.0, highest, 4)
+    )
     return (
-        '<div style="padding: 0 0.8em 0.5em; font-size: 0.8em">Normal load, kN'
+        f'<div style="padding: 0 0.8em 0.5em; font-size: 0.8em">Normal load, {unit.name}'
         f'<div style="height: 0.8em; background: linear-gradient(to right, {", ".join(RAMP)})"></div>'
-        f'<div style="display: flex; justify-content: space-between">{ticks}</div></div>'
+        f'<div style="position: relative; height: 1.6em">{marks}</div></div>'
     )
 
 

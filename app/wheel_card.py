@@ -8,6 +8,7 @@ from typing import Any, Protocol
 import viser
 
 from app.callbacks import by_user
+from app.load_unit import LoadUnit
 from model.ride import WheelState
 
 HEIGHT, GAP = 152, 14  # px; GAP from the view's upper edge
@@ -53,22 +54,22 @@ class WheelCard:
         if self._panel is not None:
             self._panel.float(x=x, y=GAP, width=width, height=HEIGHT)
 
-    def show(self, state: WheelState, colour: str) -> None:
-        """Fill in the card; colour: the wheel's, CSS."""
+    def show(self, state: WheelState, colour: str, unit: LoadUnit) -> None:
+        """Fill in the card; colour: the wheel's, CSS; unit: of forces."""
         if self._panel is not None:
-            self._text.content = card(state, colour)
+            self._text.content = card(state, colour, unit)
 
 
-def card(state: WheelState, colour: str) -> str:
-    """HTML of a wheel's figures."""
+def card(state: WheelState, colour: str, unit: LoadUnit) -> str:
+    """HTML of a wheel's figures, forces in that unit."""
     family = "Road wheel" if state.name.startswith("R") else "Imaginary wheel"
     in_air = state.penetration is None
     figures = (
-        ("Normal load", _figure(state.normal_load / 1e3, 2, "kN")),
+        ("Normal load", unit.text(state.normal_load)),
         ("Share of all loads", _figure(_percent(state.load_share), 1, "%")),
-        ("Traction", _figure(state.traction / 1e3, 2, "kN")),
+        ("Traction", unit.text(state.traction)),
         ("Penetration", _figure(None if state.penetration is None else 1e3 * state.penetration, 1, "mm")),
-        ("Load at rest", _figure(state.static_load / 1e3, 2, "kN")),
+        ("Load at rest", unit.text(state.static_load)),
         ("Share of torque", _figure(_percent(state.torque_share), 1, "%")),
         ("Slip of the rim", _figure(state.slip_velocity, 3, "m/s")),
         ("Arm in the hull", _figure(state.arm_angle, 2, "°")),
@@ -93,11 +94,12 @@ def _figure(value: float | None, digits: int, unit: str) -> str:
 
 STYLE = """<style>
   div:has(+ div > .trackride-wheel) { float: right; margin: 0.35em 0.6em 0 0; }
-  div:has(+ div > .trackride-wheel) button { height: 1.8em !important; padding: 0 0.8em; font-size: 0.75em; }
+  div:has(+ div > .trackride-wheel) button { height: 1.8em !important; padding: 0 0.8em; font-size: 0.75em;
+    background: #5c6670 !important; }
   .trackride-wheel { padding: 0 0.9em; font-size: 0.8em; line-height: 1.4; }
   .trackride-wheel p { margin: 0 0 0.35em; line-height: 2; white-space: nowrap; }
   .trackride-wheel i { display: inline-block; width: 0.8em; height: 0.8em; border-radius: 50%; margin-right: 0.5em; }
-  .trackride-wheel em { font-style: normal; font-weight: 550; color: light-dark(#d6232b, #ff7b7b); padding-left: 1ch; }
+  .trackride-wheel em { font-style: normal; font-weight: 550; color: var(--trackride-bad); padding-left: 1ch; }
   .trackride-wheel > div { display: grid; grid-template-columns: repeat(4, 1fr); gap: 0.25em 0.8em; }
   .trackride-wheel span { color: var(--mantine-color-dimmed); white-space: nowrap; font-size: 0.9em; }
   .trackride-wheel span b { display: block; font-weight: 550; font-size: 1.1em; color: var(--mantine-color-text);

@@ -16,6 +16,7 @@ from app.controls import Wishes, refusal
 from app.driving import DriveState
 from app.exports_panel import Exporter, ExportsPanel
 from app.keys import Keys, add_keys
+from app.load_unit import load_unit
 from app.mode_show import PERIOD, ModeShow
 from app.notices import Notices
 from app.playback import Playback
@@ -293,8 +294,8 @@ class Window:
         self.scene.write_loads()
         self._show_wheel()
         self._show_road(playback.time)
-        if self._filled:
-            self._view.show_load_scale(self.scene.load_top)
+        if self._filled and self._run is not None:
+            self._view.show_load_scale(self.scene.load_top, load_unit(self._run.system))
 
     def _show_road(self, time: float) -> None:
         """The side view of the road about the vehicle at a time of the run or drive, s.
@@ -349,7 +350,7 @@ class Window:
         state = self.scene.wheel_state(wheel) if wheel is not None else None
         if wheel is not None and state is not None and self._run is not None:
             palette = wheel_palette(self._run.system.n, self._run.system.m, self._dark)
-            self._card.show(state, palette.wheels[wheel])
+            self._card.show(state, palette.wheels[wheel], load_unit(self._run.system))
         elif wheel is not None:
             self.pick_wheel(None)
 

@@ -33,9 +33,23 @@ if (!window.trackridePlots) {
     const [now, name] = groupOf(chart).marks[0] ?? [];
     if (name === '' && chart.cursor.left < 0) chart.setLegend({idx: chart.valToIdx(now)}, false);
   };
+  // Where the cursor of time stands between the points that are drawn, the value lies on the line between them.
+  const valueOf = (chart, value, k, idx) => {
+    const x = chart.data[0], [now, name] = groupOf(chart)?.marks[0] ?? [];
+    if (!Number.isFinite(value) || k === 0) return null;
+    if (name === '' && chart.cursor.left < 0) {
+      const on = x[idx] < now ? idx + 1 : idx - 1, part = (now - x[idx]) / (x[on] - x[idx]), other = chart.data[k][on];
+      if (part > 0 && Number.isFinite(other)) value += part * (other - value);
+    }
+    const {min, max} = chart.scales.y;
+    const most = name === '' ? 2 : 4;  // decimals that the values have
+    const digits = Math.min(Math.max(Math.ceil(3 - Math.log10(max - min)), 0), most);  // to a thousandth of the axis
+    return (Number(value.toFixed(digits)) + 0).toFixed(digits);  // no minus before zero
+  };
   const zoom = (chart) => {
     const [from, to] = groupOf(chart).zoom, [first, last] = ends(chart), {min, max} = chart.scales.x;
-    const [low, high] = [first + from * (last - first), first + to * (last - first)];
+    const low = from < 1e-6 ? first : first + from * (last - first);  // to the very end: it may have a number on the axis
+    const high = to > 1 - 1e-6 ? last : first + to * (last - first);
     const shown = Math.abs(low - min) + Math.abs(high - max) <= 1e-6 * (last - first);  // viser makes some charts with 0…1
     if (!shown) chart.setScale('x', {min: low, max: high});
   };
@@ -68,7 +82,9 @@ if (!window.trackridePlots) {
     chart.root.querySelector('.u-title').title = 'Drag across the plot to zoom in, double-click to see all';
     chart.root.querySelector('.u-legend').title = 'Click a name to hide its curve, with Ctrl to hide all others';
     chart.series.forEach((_, k) => thicken(chart, k));
+    chart.series.forEach((curve) => curve.value = valueOf);
     hide(chart);
+    chart.redraw();  // with lines as thick as they are to be, also where no other run comes
     (chart.hooks.setSeries ??= []).push((_, k, change) => {
       if (k === null || change.show === undefined || chart.series[k].class !== 'run') return;
       const [runs, gone] = kin(chart);

@@ -92,6 +92,14 @@ def test_undo_leads_back_across_presets_and_shows_which(tab: Tab) -> None:
     wait_for(lambda: tab.widget(SPEED)["value"] == 20)
 
 
+def test_during_a_drive_the_figures_are_said_to_be_those_of_the_last_run(tab: Tab) -> None:
+    wait_for(lambda: "Now Paper vehicle" in text_of(html(tab, "trackride-compared")).replace("● ", ""))
+    tab.use("Mode", "○ Drive")
+    wait_for(lambda: "Last run Paper vehicle" in text_of(html(tab, "trackride-compared")), "the heading of a drive")
+    tab.use("Mode", "○ Run")
+    wait_for(lambda: "Now ● Paper vehicle" in text_of(html(tab, "trackride-compared")), "the run")
+
+
 def test_a_drag_leaves_one_run_and_one_step(tab: Tab, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(app.desk, "REST", 1.0)
     monkeypatch.setattr(app.history, "REST", 1.0)

@@ -95,7 +95,7 @@ def test_a_run_is_named_after_its_changes_in_shown_units():
     assert named(Wish(PAPER).changed("vehicle.imaginary_wheels.enabled", False)) == "Imaginary wheels on → off"
     flat = named(Wish(PAPER).changed("road.type", "flat"))
     assert flat == "Road type sine → flat"
-    assert "automatic → 3" in named(Wish(PAPER).changed("road.start", 3.0))
+    assert "left out → 3" in named(Wish(PAPER).changed("road.start", 3.0))
 
 
 def test_runs_are_told_apart_and_kept_once():

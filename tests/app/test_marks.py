@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from app.ghost import Outline
+from app.load_unit import KILONEWTON
 from app.marks import IN_AIR, ring_looks, scale_bar, static_marks, traction_arrows, travel_bars
 from app.scene import Scene, build_scene, live_scene
 from app.stage import Stage
@@ -154,10 +155,10 @@ def test_the_road_of_a_drive_is_laid_once_for_many_instants(tab: Tab) -> None:
 def test_a_wheel_s_card_says_when_it_is_in_the_air(scene: Scene) -> None:
     time, wheel = flight(scene)
     state = wheel_state(scene.trajectory, wheel, time)
-    text = card(state, "#123456")
+    text = card(state, "#123456", KILONEWTON)
     assert all(part in text for part in ("in the air", "0.00 kN", "#123456", "–"))
-    assert "<b>0.000 m/s</b>" in card(replace(state, slip_velocity=-1e-5), "#123456")
-    rolling = card(wheel_state(scene.trajectory, 2, 0.0), "#123456")
+    assert "<b>0.000 m/s</b>" in card(replace(state, slip_velocity=-1e-5), "#123456", KILONEWTON)
+    rolling = card(wheel_state(scene.trajectory, 2, 0.0), "#123456", KILONEWTON)
     assert "R3" in rolling
     assert "in the air" not in rolling
 

@@ -64,11 +64,11 @@ def test_parts_as_text_and_back() -> None:
     config = load_config("obstacles")
     text = parts_text(config.road.parts)  # type: ignore[union-attr]
     assert text.splitlines()[:2] == [
-        "random: roughness class C, seed 7, length 200",
-        "half round: position 10, height 100, radius 0.2",
+        "random: roughness class C, seed 7, length 200 m",
+        "half round: position 10 m, height 100 mm, radius 0.2 m",
     ]
     assert config.replace({"road.parts": parts_from(text, ())}).road == config.road
-    shorter = "\n".join(text.replace("height 100", "height 55").splitlines()[:2])
+    shorter = "\n".join(text.replace("height 100 mm", "height 55").splitlines()[:2])
     road = config.replace({"road.parts": parts_from(shorter, ())}).road
     assert [part.type for part in road.parts] == ["random", "half_round"]  # type: ignore[union-attr]
     assert road.parts[1].height == 0.055  # type: ignore[union-attr]
@@ -87,6 +87,7 @@ def test_a_profile_among_the_parts_stays_what_it_is() -> None:
     [
         ("half round: position 8, hight 3", "road.parts[0].hight"),
         ("flat\nstep: position far", "road.parts[1].position"),
+        ("step: height 0.1 m", "road.parts[0].height_0.1"),
         ("cobbles", "road.parts[0].type"),
         ("step: position", "road.parts[0].position"),
         ("sum: parts 3", "road.parts[0].parts"),
@@ -105,8 +106,8 @@ def named(wish: Wish) -> str:
 
 def test_runs_on_new_roads_have_short_names() -> None:
     wish = Wish(PAPER, {"road.type": "profile", "road.points": "5 0, 6 0.1, 9 0"})
-    assert named(wish) == "Road type sine → profile, Profile automatic → 3 points, 4 m long, 0.1 m high"
-    assert named(Wish(PAPER, with_part(PAPER, "step"))).endswith("Parts automatic → sine + step")
+    assert named(wish) == "Road type sine → profile, Profile 3 points, 4 m long, 0.1 m high"
+    assert named(Wish(PAPER, with_part(PAPER, "step"))).endswith("Parts sine + step")
 
 
 # Profiles
@@ -134,7 +135,7 @@ def test_obstacles_are_added_and_edited_in_a_tab(explore: Any, open_tab: Any) ->
     tab.use("Add", "Half round")
     wait_for(lambda: tab.widget("Road type")["value"] == "sum", "a sum")
     text = wait_for(lambda: tab.widget("Parts")["value"], "its parts")
-    assert text.splitlines()[1] == "half round: position 5.1, height 100, radius 0.2"
+    assert text.splitlines()[1] == "half round: position 5.1 m, height 100 mm, radius 0.2 m"
     tab.use("Speed, km/h", 22)
     wait_for(lambda: tab.shows_run(3), "run 3")
     assert tab.widget("Parts")["value"] == text  # other sliders leave it alone
@@ -160,7 +161,9 @@ def test_side_view_has_the_road_and_the_wheels_to_scale() -> None:
     assert y.min() >= 0
     assert y.max() <= HEIGHT
     assert view.count("<circle") == 2
-    assert re.findall(r">(-?\d+) m<", view) == ["10", "20", "30", "40", "50"]
+    assert re.findall(r">(-?\d+) m<", view) == ["20", "30", "40"]  # at the ends they would be cut
+    told = float(re.search(r"enlarged (\S+) times", view)[1])  # type: ignore[index]
+    assert told == pytest.approx(-slope / (WIDTH / (BEHIND + AHEAD)), rel=0.05)
 
 
 def test_side_view_follows_time_on_one_scale() -> None:

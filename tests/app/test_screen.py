@@ -7,7 +7,21 @@ import pytest
 
 from app import playback_panel, wheel_card
 from app.camera import Standpoint, View, standpoint
-from app.screen import AXIS_NAME, CARD, LEFT, PLOTS_HEAD, RIGHT, SEAMS, WIDEST, Screen, chart_height
+from app.screen import (
+    AXIS_NAME,
+    CARD,
+    HIGHEST,
+    LEFT,
+    LOWEST,
+    MODES,
+    PLOTS_HEAD,
+    RIGHT,
+    SEAMS,
+    WIDEST,
+    Screen,
+    chart_height,
+    spectrum_height,
+)
 from assets.hull import hull_edges
 from assets.layout import layout_of
 from model import load_config
@@ -49,12 +63,18 @@ def test_a_taller_page_makes_taller_charts_but_coarser_drawing_does_not() -> Non
 @pytest.mark.parametrize(("height", "plots"), [(720, 3), (720, 4), (900, 4), (1000, 2), (1440, 4)])
 def test_charts_fill_the_page_below_each_other(height: int, plots: int) -> None:
     taken = PLOTS_HEAD + AXIS_NAME + plots * (chart_height(height, plots) + CARD)
-    assert 0 <= height - taken < plots or chart_height(height, plots) == 460
+    assert 0 <= height - taken < plots or chart_height(height, plots) == HIGHEST
 
 
 def test_charts_stay_usable_on_any_page() -> None:
-    assert chart_height(300, 3) == 110
-    assert chart_height(5000, 2) == 460
+    assert chart_height(300, 3) == LOWEST
+    assert chart_height(5000, 2) == HIGHEST
+
+
+def test_the_spectrum_takes_what_the_modes_leave_of_a_tall_page_and_half_of_a_low_one() -> None:
+    assert spectrum_height(720) == chart_height(720, 2)
+    assert spectrum_height(1200) == 1200 - MODES - PLOTS_HEAD - AXIS_NAME - CARD > chart_height(1200, 2)
+    assert spectrum_height(5000) == HIGHEST
 
 
 def heights_in_picture(points: np.ndarray, stood: Standpoint, height: int) -> np.ndarray:

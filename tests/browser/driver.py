@@ -74,7 +74,7 @@ class Explorer:
 
     def come_to_rest(self) -> None:
         """As after opening, but paused at the start of the run and without messages."""
-        self.page.evaluate("document.querySelectorAll('.mantine-Notification-closeButton').forEach(one => one.click())")
+        self.close_messages()
         if self.button("● Drive").is_visible():
             self.button("○ Run").click()
             expect(self.status).to_contain_text("real time")
@@ -88,7 +88,17 @@ class Explorer:
         self.page.keyboard.press("r")
         self.wait_for_run(after=before)
         self.wait_for_value("Time, s", "now === 0")
-        expect(self.page.locator(".mantine-Notification-closeButton")).to_have_count(0)
+        expect(self.messages).to_have_count(0)
+
+    @property
+    def messages(self) -> Locator:
+        """What closes them."""
+        return self.page.locator(".mantine-Notification-closeButton")
+
+    def close_messages(self) -> None:
+        """Those that there are."""
+        self.messages.evaluate_all("all => all.forEach(one => one.click())")
+        self.page.wait_for_timeout(500)  # they fade
 
     @property
     def status(self) -> Locator:

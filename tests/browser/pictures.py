@@ -18,18 +18,16 @@ GALLERY = {  # three vehicles on three roads: preset, what is set, time in s, an
 
 
 def take(explorer: Explorer, name: str) -> None:
-    """A picture of the whole page, once everything has been drawn."""
+    """A picture of the whole page, once everything has been drawn, without messages."""
     explorer.page.mouse.move(SIZE["width"] / 2, 40)  # no hint in the way
     explorer.page.wait_for_timeout(5000)
+    explorer.close_messages()
     explorer.page.screenshot(path=PICTURES / f"{name}.png")
 
 
 def open_at_rest(explorer: Explorer, address: str) -> None:
     """The explorer, paused in the middle of the run."""
     explorer.open(address)
-    notice = explorer.page.locator(".mantine-Notification-closeButton")
-    if notice.count():  # that WebGL runs in software
-        notice.first.click()
     explorer.page.wait_for_timeout(4000)  # to where the waves are in full height
     explorer.button("Pause").click()
     explorer.page.wait_for_timeout(1000)

@@ -10,6 +10,22 @@ from playwright.sync_api import expect
 
 from tests.browser.driver import NEW_CURVES, SOON, Explorer
 
+# Whether the line that tells the stretch of the drive is there and covers no other text and no box.
+CLEAR = """() => {
+  const said = [...document.querySelectorAll('.trackride-stretch span')].find(line => line.offsetWidth);
+  if (!said) return false;
+  const panel = said.closest('.mantine-Paper-root'), boxes = [...panel.querySelectorAll('input, canvas, img')];
+  const texts = document.createTreeWalker(panel, NodeFilter.SHOW_TEXT), range = document.createRange();
+  while (texts.nextNode()) {
+    range.selectNodeContents(texts.currentNode);
+    if (texts.currentNode.parentElement !== said && texts.currentNode.parentElement.tagName !== 'STYLE')
+      boxes.push({getBoundingClientRect: (rect => () => rect)(range.getBoundingClientRect())});
+  }
+  const own = said.getBoundingClientRect();
+  return boxes.map(box => box.getBoundingClientRect()).every(box => !box.width ||
+    box.right <= own.left || box.left >= own.right || box.bottom <= own.top || box.top >= own.bottom);
+}"""
+
 
 def driven(explorer: Explorer) -> str:
     """What the player says of the drive: "0:05 · 21 m · 1.00× of 1× real time"."""
@@ -69,6 +85,9 @@ def test_the_drive_goes_on_follows_sliders_and_rests_in_the_background(at_rest: 
     end = at_rest.value("Time, s")
     page.get_by_role("tab", name="Spectrum").click()
     expect(page.get_by_text("The drive from").locator("visible=true")).to_have_count(1)
+    for tab in ("Trust", "Load map", "Spectrum"):
+        page.get_by_role("tab", name=tab, exact=True).click()
+        page.wait_for_function(CLEAR)
     at_rest.press("Time, s", "Home")
     at_rest.wait_for_value("Time, s", "now < value", end)
     page.get_by_role("tab", name="Loads").click()

@@ -22,6 +22,15 @@ MAP = """() => {  // the stretch of time that is seen, s
 VALUES = f"""() => ({CHARTS})().map(chart => [...chart.root.querySelectorAll('.u-series:not(.static) .u-value')]
     .slice(1).map(value => parseFloat(value.textContent)))"""
 
+WRONG = f"""() => ({CHARTS})().flatMap(chart => {{  // [what is told of a curve at the cursor, where it is elsewhere]
+  const [now] = document.querySelector("trackride-marks[for='trackride-time']").getAttribute('at').match(/[\\d.]+/);
+  const x = chart.data[0], after = x.findIndex(time => time >= now), [from, to] = [x[after - 1], x[after]];
+  return [...chart.root.querySelectorAll('.u-series.run')].map((row, k) => {{
+    const [low, high] = [after - 1, after].map(point => chart.data[k + 1][point]);
+    return [row.querySelector('.u-value').textContent, low + (high - low) * (now - from) / (to - from)];
+  }}).filter(([told, value]) => !(Math.abs(told - value) <= 0.5 / 10 ** (told.split('.')[1]?.length ?? 0) + 1e-6));
+}})"""
+
 
 def show(page: Page, tab: str) -> None:
     page.get_by_role("tab", name=tab, exact=True).click()
@@ -94,6 +103,16 @@ def test_one_cursor_goes_through_all_plots_and_the_values_at_it_are_shown(at_res
         page.wait_for_function(f"() => ({CURSORS})().every(t => Math.abs(t - 10) < 0.05)")
         page.wait_for_function(f"() => ({VALUES})().flat().every(value => Number.isFinite(value))")
         assert [len(values) for values in page.evaluate(VALUES)] == ([6, 5, 1] if tab == "Loads" else [1, 1, 1, 6])
+
+
+def test_the_values_at_the_cursor_lie_on_the_curves_between_the_points_that_are_drawn(at_rest: Explorer) -> None:
+    page = at_rest.page
+    at_rest.box("Time").fill("4.71")  # where loads change fast
+    at_rest.box("Time").press("Enter")
+    at_rest.wait_for_value("Time, s", "now === 4.71")
+    for tab in ("Loads", "Ride"):
+        show(page, tab)
+        page.wait_for_function(f"() => ({CHARTS})().length > 2 && ({WRONG})().length === 0")
 
 
 def test_the_ride_is_told_in_a_line_and_in_tables(at_rest: Explorer) -> None:

@@ -14,7 +14,7 @@ def test_an_obstacle_is_added_to_the_road_and_seen_ahead(at_rest: Explorer) -> N
     expect(view).to_be_visible(timeout=SOON)
     at_rest.button("Trapezoid").click()
     at_rest.wait_for_run(after=before)
-    parts = "sine: amplitude 100, wavelength 7\ntrapezoid: position 5.1, height 100, top 0.5, base 1.5"
+    parts = "sine: amplitude 100 mm, wavelength 7 m\ntrapezoid: position 5.1 m, height 100 mm, top 0.5 m, base 1.5 m"
     expect(at_rest.page.locator("textarea:not([aria-hidden])")).to_have_value(parts, timeout=SOON)
     seen = view.get_attribute("points")
     at_rest.press("Time, s", "End")
