@@ -90,6 +90,11 @@ class Desk:
             self._show()
         self._came_true(wish, now)
 
+    def set_dark(self, dark: bool) -> None:
+        """Change the look of the page."""
+        self._window.set_dark(dark)
+        self._news_at = 0.0
+
     def tick(self, now: float) -> None:
         """Do what waits for a moment of rest; `now`, s."""
         if self._baseline is not None and self._baseline.run is None:
@@ -297,12 +302,14 @@ class Desk:
     def restore(self, state: State | None) -> None:
         """Go on where this browser was at its last visit; None: it does not tell.
 
-        Presets and runs are there again in any case; parameters and baseline unless the explorer was started with
+        Look, presets and runs are there again in any case; parameters and baseline unless the explorer was started with
         something else, or the user is at work already.
         """
         self._restored = True
         if state is None:
             return
+        if state.dark:
+            self._window.set_dark(True)
         for preset in state.presets:
             if preset not in self._presets.values():
                 self._offer(preset)
@@ -322,7 +329,9 @@ class Desk:
     def _remember(self) -> None:
         self._news_at = None
         own = [self._presets[name] for name in self._own]
-        stored = state_text(self._started_with, self._changes.present, own, self._runs, self._baseline)
+        stored = state_text(
+            self._started_with, self._changes.present, own, self._runs, self._baseline, self._window.dark
+        )
         if stored != self._stored:
             self._stored = stored
             self._helper.remember(stored)

@@ -27,10 +27,11 @@ class State:
     presets: tuple[Config, ...]  # the user's own, oldest first
     runs: tuple[Kept, ...]  # without their trajectories, oldest first
     baseline: Kept | None
+    dark: bool  # its look
 
 
 def state_text(
-    start: Config, wish: Wish, presets: Iterable[Config], runs: Iterable[Kept], baseline: Kept | None
+    start: Config, wish: Wish, presets: Iterable[Config], runs: Iterable[Kept], baseline: Kept | None, dark: bool
 ) -> str:
     """All of it as JSON; of runs only how to make them again."""
     return json.dumps(
@@ -40,6 +41,7 @@ def state_text(
             "presets": [preset.values() for preset in presets],
             "runs": [_run_values(kept) for kept in runs],
             "baseline": None if baseline is None else _run_values(baseline),
+            "dark": dark,
         },
         default=part_values,  # of the roads that a sum is made of
     )
@@ -61,6 +63,7 @@ def state_from(text: str) -> State:
         presets=_all_usable(_config, state.get("presets"), PRESETS),
         runs=_all_usable(_run, state.get("runs"), RUNS),
         baseline=_usable(_run, state.get("baseline")),
+        dark=state.get("dark") is True,
     )
 
 

@@ -192,7 +192,7 @@ class Session:
         self._intend(switch, lambda: self._window.toggle_switch(switch))
 
     def set_dark(self, dark: bool) -> None:
-        self._intend("dark", lambda: self._window.set_dark(dark))
+        self.ask("dark", lambda desk: desk.set_dark(dark))
 
     def export(self, what: str) -> None:
         """Wish for a download: a key of the porter's."""

@@ -90,13 +90,17 @@ class ViewPanel:
                 initial_value=1.0,
                 hint="Of all force arrows; at 1 an even share of the weight is as high as a road wheel, at 2 as two",
             )
-            night = gui.add_checkbox("Dark", dark, hint="Dark colours for page, plots and view")
+            self._night: Any = gui.add_checkbox("Dark", dark, hint="Dark colours for page, plots and view")
             self._load_scale = gui.add_html("", visible=False)
         views.on_click(by_user(lambda event: viewer.set_view(VIEWS[event.target.value]), viewer.fail))
         for attribute, box in self._switches.items():
             box.on_update(by_user(_switching(viewer, attribute), viewer.fail))
         scale.on_update(by_user(_switching(viewer, "arrow_scale"), viewer.fail))
-        night.on_update(by_user(lambda event: viewer.set_dark(event.target.value), viewer.fail))
+        self._night.on_update(by_user(lambda event: viewer.set_dark(event.target.value), viewer.fail))
+
+    def show_dark(self, dark: bool) -> None:
+        """Say which look the page has."""
+        self._night.value = dark
 
     def show_load_scale(self, top: float | None, unit: LoadUnit) -> None:
         """What the wheels' colours mean, from 0 to `top`, N, told in that unit; None: they mean nothing."""

@@ -336,6 +336,8 @@ class Window:
 
     def set_dark(self, dark: bool) -> None:
         self._dark = dark
+        if self._filled:
+            self._view.show_dark(dark)
         apply_theme(self._client.gui, dark)
         self._plots.set_dark(dark)
         self.scene.set_dark(dark)

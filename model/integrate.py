@@ -150,7 +150,13 @@ class Integration:
         )
         if self.integrator in ADAPTIVE:
             adaptive(
-                ADAPTIVE[self.integrator], *common, 1.0 / self._scale, self._longest(), self._stages, self.y, *self._spare
+                ADAPTIVE[self.integrator],
+                *common,
+                1.0 / self._scale,
+                self._longest(),
+                self._stages,
+                self.y,
+                *self._spare,
             )
         elif self.integrator == "rk4":
             runge_kutta_4(*common, self._stages, self.y, *self._spare)

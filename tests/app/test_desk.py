@@ -266,7 +266,8 @@ def test_a_baseline_that_cannot_be_made_again_is_given_up_with_a_word(explore: A
     paper = load_config("paper")
     wish = Wish(paper).changed(SPEED_KEY, 44)
     kept = Runs().keep(wish, make_run(wish.config()))
-    tab: Tab = open_tab(explore(run=simulate), storage={"trackride": state_text(paper, Wish(paper), [], [], kept)})
+    stored = state_text(paper, Wish(paper), [], [], kept, dark=False)
+    tab: Tab = open_tab(explore(run=simulate), storage={"trackride": stored})
     wait_for(lambda: [n for n in tab.notifications if n["title"] == "No baseline"], "a word")
     wait_for(lambda: "No baseline" in text_of(html(tab, "trackride-compared")))
     wait_for(lambda: json.loads(tab.storage["trackride"])["baseline"] is None)
@@ -278,6 +279,18 @@ def test_nothing_is_stored_before_the_browser_has_told_what_it_has(explore: Any,
     wait_for(lambda: rows(tab) == ["Paper vehicle"], "a run to be kept")
     time.sleep(0.4)
     assert storage == {"trackride": "old"}
+
+
+def test_the_look_comes_back(explore: Any, open_tab: Any) -> None:
+    explorer, storage = explore(), {}
+    tab: Tab = open_tab(explorer, storage=storage)
+    wait_for(lambda: tab.shows_run(1))
+    wait_for(lambda: tab.widget("Dark")["value"] is False)
+    tab.use("Dark", True)
+    wait_for(lambda: json.loads(storage["trackride"])["dark"], "the look to be stored")
+    again: Tab = open_tab(explorer, storage=storage)
+    wait_for(lambda: again.widget("Dark")["value"] is True, "the look of the last visit")
+    wait_for(lambda: explorer.sessions[-1]._window.scene.dark)
 
 
 @pytest.mark.parametrize("stored", ["", "nonsense", "null", "{}", '{"presets": [1], "wish": 2, "runs": [{}]}'])
@@ -293,7 +306,7 @@ def test_what_the_explorer_was_started_with_goes_before_the_last_visit(explore: 
     paper = load_config("paper")
     wish = Wish(paper).changed(SPEED_KEY, 33)
     kept = Runs().keep(wish, make_run(wish.config()))
-    stored = state_text(paper, wish, [paper.replace({"name": "Mine"})], [kept], kept)
+    stored = state_text(paper, wish, [paper.replace({"name": "Mine"})], [kept], kept, dark=False)
     tab: Tab = open_tab(explore(load_config("half_round"), "half_round"), storage={"trackride": stored})
     wait_for(lambda: "Mine" in tab.widget("Preset")["props"]["options"], "the saved preset")
     wait_for(lambda: "Speed 15 → 33 km/h" in rows(tab), "the kept run")

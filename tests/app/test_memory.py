@@ -34,18 +34,18 @@ def kept_runs() -> tuple[Kept, ...]:
 @cache
 def text() -> str:
     runs = kept_runs()
-    return state_text(PAPER, WISH, [OTHER], runs, runs[1])
+    return state_text(PAPER, WISH, [OTHER], runs, runs[1], dark=True)
 
 
 def test_all_comes_back_but_the_trajectories() -> None:
     runs = tuple(replace(kept, number=0, run=None) for kept in kept_runs())
-    assert state_from(text()) == State(PAPER, Wish(PAPER, WISH.changes), (OTHER,), runs, runs[1])
+    assert state_from(text()) == State(PAPER, Wish(PAPER, WISH.changes), (OTHER,), runs, runs[1], dark=True)
 
 
 @pytest.mark.parametrize("added", ADDED)
 def test_a_road_made_of_parts_comes_back(added: str) -> None:
     wish = Wish(PAPER, with_part(PAPER, added))
-    found = state_from(state_text(PAPER, wish, [wish.config()], (), None))
+    found = state_from(state_text(PAPER, wish, [wish.config()], (), None, dark=False))
     assert found.wish is not None
     assert found.wish.config() == found.presets[0] == wish.config()
 
@@ -99,4 +99,4 @@ def test_no_value_put_anywhere_does_harm(data: st.DataObject) -> None:
     found = state_from(json.dumps(state))
     assert all(kept.colour in RUN_COLOURS and kept.wish.config() == kept.config for kept in found.runs)
     if found.wish is not None:
-        state_text(PAPER, found.wish, found.presets, found.runs, found.baseline)
+        state_text(PAPER, found.wish, found.presets, found.runs, found.baseline, found.dark)
