@@ -7,6 +7,7 @@ from dataclasses import dataclass
 LEFT = 345  # px, width of the control panel
 RIGHT = 470  # px, width of the plots at least
 WIDEST = 760  # px, width of the plots at most
+PLOTS_SHARE = 0.3  # of the page's width
 SEAMS = 8  # px that viser puts between docked panels and the view
 PLAYER = 560  # px, width of the player at most
 MODES = 485  # px beside the spectrum: three boxes and the table of a paper's vehicle's modes
@@ -53,13 +54,20 @@ class Screen:
             if abs(nearest - measured) > 0.02 * nearest:
                 return None  # not yet docked
             self._scale = nearest
-            self._right = int(min(max(RIGHT, 0.3 * self._full_width / nearest), WIDEST))
-            wider = self._right - RIGHT  # which the plots will take from the view
-            return _layout(width / nearest - wider, height / nearest, self._right)
+            return self._shared(width, height)
         if abs(width * before[1] / (height * before[0]) - 1) < 0.005:
             self._scale *= height / before[1]  # viser draws coarser or finer now; the page is as it was
             return None
+        if height != before[1]:  # the page itself is another size: no seam was moved
+            return self._shared(width, height)
         return _layout(width / self._scale, height / self._scale, self._right)
+
+    def _shared(self, width: int, height: int) -> Layout:
+        """Sizes with the plots as wide as suits the page; of the view now, screen pixels."""
+        assert self._scale is not None
+        view, before = width / self._scale, self._right
+        self._right = int(min(max(RIGHT, PLOTS_SHARE * (LEFT + view + before + SEAMS)), WIDEST))
+        return _layout(view + before - self._right, height / self._scale, self._right)
 
 
 def _layout(view_width: float, page_height: float, right: int) -> Layout:

@@ -44,6 +44,27 @@ def test_the_page_is_found_behind_the_view(width: int, height: int, scale: float
     assert middle == pytest.approx(view / 2, abs=3)
 
 
+def test_a_window_made_larger_or_smaller_shares_its_width_anew() -> None:
+    screen = Screen(1280, 720)
+    opened = screen.update(1280 - LEFT - RIGHT - SEAMS, 720)
+    maximised = screen.update(2560 - LEFT - RIGHT - SEAMS, 1440)
+    assert opened is not None
+    assert maximised is not None
+    assert (opened.right, maximised.right) == (RIGHT, WIDEST)
+    assert maximised.player_x + maximised.player_width / 2 == pytest.approx((2560 - LEFT - WIDEST - SEAMS) / 2, abs=3)
+    again = screen.update(1280 - LEFT - WIDEST - SEAMS, 720)
+    assert again == opened
+
+
+def test_a_seam_that_is_moved_stays_where_it_is() -> None:
+    screen = Screen(1600, 900)
+    opened = screen.update(1600 - LEFT - RIGHT - SEAMS, 900)
+    moved = screen.update(1600 - LEFT - RIGHT - SEAMS - 200, 900)
+    assert opened is not None
+    assert moved is not None
+    assert moved.right == opened.right
+
+
 def test_half_docked_panels_tell_nothing() -> None:
     screen = Screen(1280, 720)
     assert screen.update(1280 - LEFT, 720) is None
