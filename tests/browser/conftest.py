@@ -9,7 +9,7 @@ from playwright.sync_api import Browser, ViewportSize
 
 from tests.browser.driver import Explorer, chromium, running_explorer
 
-OpenTab = Callable[..., Explorer]
+OpenTab = Callable[[], Explorer]
 SIZE: ViewportSize = {"width": 1280, "height": 720}
 
 
@@ -30,8 +30,8 @@ def open_tab(browser: Browser, address: str) -> Iterator[OpenTab]:
     """A function that opens the explorer in a tab of its own."""
     contexts = []
 
-    def open_one(size: ViewportSize = SIZE) -> Explorer:
-        contexts.append(browser.new_context(viewport=size))
+    def open_one() -> Explorer:
+        contexts.append(browser.new_context(viewport=SIZE))
         return Explorer(contexts[-1].new_page()).open(f"{address}/?fixedDpr=0.5")
 
     yield open_one
