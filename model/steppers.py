@@ -81,7 +81,7 @@ def error_scale(system: System, rtol: float, atol: float) -> np.ndarray:
     """What counts as an error of one for each entry of the flat state: atol + rtol · size.
 
     The sizes are fixed ones for each kind of state, so that the accuracy is the same wherever on the road the vehicle
-    is and however far its wheels have turned.
+    is and however far its wheels have turned. On rough ground all of them grow with `liveliness`.
     """
     body, wheel = places(system.n, system.m)
     size = np.ones(state_size(system.n))
