@@ -413,7 +413,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         growth="Fewer steps and a coarser result; from about 8 ms the motion of the paper's vehicle blows up."),
     Parameter("simulation.rtol", "Relative tolerance", "", "", 0.0001, 1e-12, 0.1, 1e-8, 0.01, 1e-8,
         group=SOLVER, source=OURS,
-        description="Error allowed in a step, relative to the state's size.",
+        description="Error allowed in a step, relative to the state's size, and in proportion to rough motion.",
         growth="Fewer steps and a coarser result."),
     Parameter("simulation.atol", "Absolute tolerance", "", "", 1e-6, 1e-14, 0.1, 1e-10, 0.001, 1e-10,
         group=SOLVER, source=OURS,

@@ -260,7 +260,7 @@ def _above(cells, x, s, under, first, last, radius):
     """
     node, d = cells.node, (1.0 - SINKING) * radius
     h, h1, h2, slope, length = 0.0, 0.0, 0.0, 1.0, 1.0
-    for _ in range(8):  # on: the point d along the normal at s lies at x
+    for _ in range(8):  # until the point d along the normal at s lies at x
         s = min(max(s, node[first]), node[last + 1])
         while under > first and s < node[under]:
             under -= 1

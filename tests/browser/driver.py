@@ -98,7 +98,6 @@ class Explorer:
     def close_messages(self) -> None:
         """Those that there are."""
         self.messages.evaluate_all("all => all.forEach(one => one.click())")
-        self.page.wait_for_timeout(500)  # they fade
 
     @property
     def status(self) -> Locator:

@@ -22,6 +22,7 @@ def take(explorer: Explorer, name: str) -> None:
     explorer.page.mouse.move(SIZE["width"] / 2, 40)  # no hint in the way
     explorer.page.wait_for_timeout(5000)
     explorer.close_messages()
+    explorer.page.wait_for_timeout(500)  # they fade
     explorer.page.screenshot(path=PICTURES / f"{name}.png")
 
 
