@@ -32,7 +32,7 @@ def open_tab(browser: Browser, address: str) -> Iterator[OpenTab]:
 
     def open_one() -> Explorer:
         contexts.append(browser.new_context(viewport=SIZE))
-        return Explorer(contexts[-1].new_page()).open(f"{address}/?fixedDpr=0.5")
+        return Explorer(contexts[-1].new_page()).open(f"{address}/?fixedDpr=0.25")
 
     yield open_one
     for context in contexts:
@@ -42,7 +42,7 @@ def open_tab(browser: Browser, address: str) -> Iterator[OpenTab]:
 @pytest.fixture(scope="session")
 def shared(browser: Browser, address: str) -> Iterator[Explorer]:
     context = browser.new_context(viewport=SIZE)
-    yield Explorer(context.new_page()).open(f"{address}/?fixedDpr=0.5")
+    yield Explorer(context.new_page()).open(f"{address}/?fixedDpr=0.25")
     context.close()
 
 
