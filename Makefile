@@ -3,7 +3,7 @@ PYTHON := $(firstword $(shell command -v python3.11) $(shell command -v python3)
 BIN := .venv/bin
 AS_ROOT := $(if $(filter-out 0,$(shell id -u)),sudo,)
 
-.PHONY: setup run test check bench chromium readme paper pictures clean
+.PHONY: setup run test check bounds bench chromium readme paper pictures clean
 
 setup: .venv/ready
 
@@ -28,6 +28,10 @@ check: setup
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
+
+# After changing a kernel: the model's tests with every index of compiled code checked, as none is otherwise.
+bounds: setup
+	NUMBA_BOUNDSCHECK=1 NUMBA_CACHE_DIR=build/bounds $(BIN)/python -m pytest tests/model
 
 bench: setup
 	$(BIN)/python -m tests.benchmarks

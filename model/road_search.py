@@ -21,7 +21,7 @@ CELL_COLUMNS = 8
 # lies before X; the cell that holds the guess at its left edge; and what RoadTable says
 GUESS, GUESS_Y, TILT, GUESS_CELL, CEILING, FLOOR, FINAL_STEP = 0, 4, 6, 8, 9, 10, 11
 BIN_COLUMNS = 12
-FAR = 1e15  # m: how deep the road lies below a wheel that is too high to touch it
+FAR = 1e15  # m: farther than any place that is a number of use, and how deep a road lies that a wheel cannot touch
 
 
 class RoadTable(NamedTuple):
@@ -78,6 +78,7 @@ def _bin(road, x):
 @inlined
 def _cell(road, x):
     c = road.first_cell[_bin(road, x)]
+    x = min(x, FAR)  # else infinity would lie beyond the last cell
     while x >= road.cell[c, NEXT]:
         c += 1
     return c
@@ -175,10 +176,11 @@ def _guessed(road, b, X, Y):
     s = bins[b, GUESS] + u * (bins[b, GUESS + 1] + u * (bins[b, GUESS + 2] + u * bins[b, GUESS + 3]))
     s += (Y - bins[b, GUESS_Y] - bins[b, GUESS_Y + 1] * u) * (bins[b, TILT] + bins[b, TILT + 1] * u)
     c = int(bins[b, GUESS_CELL])
-    while s < road.cell[c, NODE] and c > 0:
+    here = min(s, FAR)  # as in _cell
+    while here < road.cell[c, NODE] and c > 0:
         c -= 1
-    c += s >= road.cell[c, NEXT]
-    while s >= road.cell[c, NEXT]:
+    c += here >= road.cell[c, NEXT]
+    while here >= road.cell[c, NEXT]:
         c += 1
     return s, c
 

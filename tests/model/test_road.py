@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from model import road_search
 from model.road import Piece, Profile, Road, build_road
 from model.road_search import HEIGHT, NODE, RoadTable
 from tests.model.nearest import assert_nearest, brute_force, centres_near, resting_height
@@ -287,3 +288,15 @@ def test_a_position_that_is_no_number_gives_no_contact(x):
     for changes in ROADS.values():
         _, _, distances = build_road(PAPER.replace(changes)).nearest(np.array([[x, 0.3], [x, -0.3]]))
         assert np.isnan(distances).all()
+
+
+@pytest.mark.parametrize("x", [np.inf, -np.inf, np.nan, 1e300])
+def test_the_search_stays_inside_the_table_wherever_a_wheel_is(x):
+    """As Python, which checks every index; the compiled search would read whatever lies beyond in memory."""
+    for changes in ROADS.values():
+        table = build_road(PAPER.replace(changes)).table
+        assert 0 <= road_search._cell.py_func(table, x) <= len(table.cell) - 1
+        for b in range(0, len(table.bin), max(1, len(table.bin) // 50)):
+            with np.errstate(all="ignore"):
+                _, cell = road_search._guessed.py_func(table, b, x, 0.3)
+            assert 0 <= cell <= len(table.cell) - 1
