@@ -207,6 +207,15 @@ def test_nearest_point_on_measured_profiles(seed):
     assert_nearest(road, centres_near(road, rng, rng.uniform(4.0, x[-1] + 1.0, 30)))
 
 
+@pytest.mark.parametrize("radius", [0.16, 0.32, 1.0])
+@pytest.mark.parametrize("kerb", ["5.01 0.1, 5.02 0.1", "5.03 0.05, 5.06 0.05", "5.03 -0.05, 5.06 -0.05"])
+def test_a_wheel_rests_on_the_shoulder_of_a_kerb_that_was_measured_finely(kerb, radius):
+    """All of the kerb lies between two points: at either, its line is level and straight."""
+    road = Road(measured(ProfileRoad(points=f"0 0, 5 0, {kerb}, 9 {kerb.split()[-1]}")), radius)
+    rng = np.random.default_rng(0)
+    assert_nearest(road, centres_near(road, rng, rng.uniform(5.0 - radius, 5.05 + radius, 25)), tolerance=1e-9)
+
+
 def test_ten_kilometres_are_read_and_ready_quickly(tmp_path):
     """Measured as the process's own time: at most a second, parsing, checking and tabulating."""
     x = np.arange(POINT_LIMIT) * 0.05

@@ -9,6 +9,8 @@ import pytest
 
 from model.config import ConfigError, RandomRoad, dump_config, parse_config
 from model.road import Road, build_road
+from model.road_search import HEIGHT, NEXT, NODE
+from model.road_table import SAME
 from model.simulate import simulate
 from tests.model.nearest import assert_nearest, centres_near
 from tests.model.support import PAPER
@@ -50,6 +52,14 @@ def test_heights_add_up(name):
         summed(parts).derivatives(x), *(alone(part).derivatives(x) for part in parts), strict=True
     ):
         np.testing.assert_allclose(found, np.sum([0 * x, *of_parts], axis=0), atol=1e-9)
+
+
+@pytest.mark.parametrize("name", SUMS)
+def test_no_cell_is_made_of_rounding(name):
+    """Where nodes of two parts fall on the same place but for the last digit."""
+    cell = summed(SUMS[name]).table.cell
+    assert np.diff(cell[:, NODE]).min() > SAME / 2
+    assert np.isfinite(cell[:, HEIGHT:NEXT]).all()
 
 
 @pytest.mark.parametrize("name", SUMS)
