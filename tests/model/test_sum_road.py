@@ -125,3 +125,8 @@ def test_parts_are_checked_under_the_vehicle_that_is_given(wheels, faults):
     with pytest.raises(ConfigError) as error:
         parse_config(f"{{vehicle: {{road_wheels: {{{wheels}}}}}, road: {{type: sum, parts: {parts}}}}}")
     assert [fault.path for fault in error.value.faults] == faults
+
+
+def test_a_part_without_a_type_is_a_sine_as_a_road_is():
+    road = parse_config("road: {type: sum, parts: [{}, {amplitude: 0.2}]}").road
+    assert [(part.type, part.amplitude) for part in road.parts] == [("sine", 0.1), ("sine", 0.2)]
