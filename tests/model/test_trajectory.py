@@ -218,6 +218,15 @@ def test_nothing_is_unpickled(run, tmp_path):
         ("v", lambda v: v.astype(str)),
         ("a", lambda a: np.full_like(a, np.nan)),
         ("multipliers", lambda lam: lam.astype(complex)),
+        ("q", lambda q: 1e200 * q),
+        ("t", lambda t: t - 1.0),
+        ("t", lambda t: t[::-1]),
+        ("seconds", lambda seconds: 0.0 * seconds),
+        ("seconds", lambda seconds: "long"),
+        ("steps", lambda steps: np.nan),
+        ("status", lambda status: "complete\n" + status),
+        ("status", lambda status: "x" * 10_000),
+        ("advice", lambda advice: np.array(["a", "b"])),
     ],
 )
 def test_arrays_that_do_not_fit_the_configuration_are_refused(run, tmp_path, name, change):
