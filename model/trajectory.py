@@ -14,6 +14,7 @@ from zipfile import BadZipFile
 import numpy as np
 
 from model.config import Config, dump_config, parse_config
+from model.files import write_whole
 from model.vehicle import System, build_system
 
 LARGEST = 1e50  # of a file's numbers: far above any run's, and their fourth powers can still be added up
@@ -66,16 +67,9 @@ class Trajectory:
         Raises ValueError for another suffix, OSError when it cannot be written; a file is there whole or not at all.
         """
         path = Path(path)
-        writers = {".npz": self._write_npz, ".csv": self._write_csv}
-        if path.suffix not in writers:
+        if path.suffix not in (".npz", ".csv"):
             raise ValueError(f"cannot save a run as {path.name!r}: the name must end in .npz or .csv")
-        partial = path.with_name(f".{path.name}.part")
-        try:
-            with partial.open("wb") as file:
-                writers[path.suffix](file)
-            partial.replace(path)
-        finally:
-            partial.unlink(missing_ok=True)
+        write_whole(path, self.to_bytes(path.suffix))
 
     @classmethod
     def load(cls, path: str | Path | IO[bytes], name: str = "") -> Trajectory:
