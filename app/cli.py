@@ -44,7 +44,11 @@ SetOption = Annotated[
 
 def main() -> None:
     """Entry point of the `trackride` command."""
-    cli(prog_name="trackride")
+    try:
+        cli(prog_name="trackride")
+    except OSError as error:  # of standard output: what writes files says so itself
+        _say(f"cannot go on: {error.strerror or error}", style="red")
+        sys.exit(1)
 
 
 def _print_version(wanted: bool) -> None:
@@ -110,6 +114,7 @@ def show(config: ConfigArgument = "paper", changes: SetOption = None) -> None:
     from model.config import dump_config
 
     sys.stdout.write(dump_config(chosen))
+    sys.stdout.flush()
 
 
 @cli.command(epilog="Example: trackride report half_round --set drive.speed_kmh=25 --out report.html")
@@ -126,10 +131,11 @@ def report(
     _check_writable(out, PAGE_SUFFIXES)
     trajectory = _simulated(chosen)
     from app.report import report_page
+    from model.files import write_whole
 
-    page = report_page(trajectory, config)
+    page = report_page(trajectory, config).encode()
     with _writing(out):
-        out.write_text(page, encoding="utf-8")
+        write_whole(out, page)
     _leave_unless_complete(trajectory, out)
     output.print(f"The report is in {out}.", markup=False, soft_wrap=True)
 
@@ -144,6 +150,7 @@ def paper(
     """
     _check_folder(out)
     from app.paper import paper_files
+    from model.files import write_whole
     from model.paper_study import StudyError, study_paper
 
     with _progress("The paper's runs") as on_progress, _interrupt() as should_stop:
@@ -161,7 +168,7 @@ def paper(
     with _writing(out):
         out.mkdir(parents=True, exist_ok=True)
         for name, content in paper_files(study).items():
-            (out / name).write_bytes(content)
+            write_whole(out / name, content)
     output.print(f"The page is {out / 'index.html'}; its figures are beside it.", markup=False, soft_wrap=True)
 
 
@@ -183,7 +190,7 @@ def _configuration(source: str, changes: list[str] | None) -> Config:
     faults, values = [], {}
     for change in changes or []:
         key, equals, text = (part.strip() for part in change.partition("="))
-        if not equals:
+        if not (key and equals):
             faults.append(f"--set {change}: give KEY=VALUE, such as drive.speed_kmh=25")
             continue
         is_text = key in PARAMETER and PARAMETER[key].kind == "text"
@@ -218,16 +225,27 @@ def _check_writable(out: Path, suffixes: tuple[str, ...]) -> None:
     """Leave when a file could not be written there: better now than after computing."""
     if out.suffix not in suffixes:
         _fail(f"--out {out}: the name must end in {' or '.join(suffixes)}")
-    if out.is_dir():
-        _fail(f"--out {out}: is a folder; give the name of a file")
-    _check_writes_into(out, out.parent)
+    with _checking(out):
+        if out.is_dir():
+            _fail(f"--out {out}: is a folder; give the name of a file")
+        _check_writes_into(out, out.parent)
 
 
 def _check_folder(out: Path) -> None:
     """Leave when files could not be written into that folder, which need not be there yet."""
-    if out.exists() and not out.is_dir():
-        _fail(f"--out {out}: is a file; give the name of a folder")
-    _check_writes_into(out, next(folder for folder in (out, *out.parents) if folder.exists()))
+    with _checking(out):
+        if out.exists() and not out.is_dir():
+            _fail(f"--out {out}: is a file; give the name of a folder")
+        _check_writes_into(out, next(folder for folder in (out, *out.parents) if folder.exists()))
+
+
+@contextmanager
+def _checking(out: Path) -> Iterator[None]:
+    """Leave with a message for a name that no file can have."""
+    try:
+        yield
+    except OSError as error:
+        _fail(f"--out {out}: {error.strerror}")
 
 
 def _check_writes_into(out: Path, folder: Path) -> None:

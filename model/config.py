@@ -434,12 +434,21 @@ def _nest(values: Mapping[str, Any]) -> dict[str, Any]:
 def _parsed(text: str) -> Any:
     try:
         return parse_yaml(text)
+    except yaml.reader.ReaderError as error:
+        line = text.count("\n", 0, error.position) + 1
+        raise _text_error(f"line {line}: not YAML text: the character U+{error.character:04X} is not allowed") from None
     except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark
+        mark, problem = error.problem_mark, " ".join((error.problem or "not YAML").split())
         where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
-        raise _text_error(where + " ".join((error.problem or "not YAML").split())) from None
-    except yaml.YAMLError as error:
-        raise _text_error(f"not YAML text: {' '.join(str(error).split())}") from None
+        raise _text_error(where + _CLEARER.get(problem, problem)) from None
+
+
+# What PyYAML says, and what a reader can do about it
+_CLEARER = {
+    r"found character '\t' that cannot start any token": "a tab; indent with blanks",
+    "but found another document": "a second document; give one, without a line ---",
+    "mapping values are not allowed here": "a colon too many; put texts that hold one in quotes",
+}
 
 
 def _text_error(message: str, source: str = "") -> ConfigError:

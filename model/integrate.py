@@ -4,6 +4,9 @@ between stretches. A run that comes to grief keeps its good part, a status and a
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from model.kernel import rates
@@ -19,6 +22,7 @@ from model.steppers import (
     SMALLEST,
     STATUS,
     STEPS,
+    STEPS_PER_SECOND,
     STRETCHED,
     TAKEN,
     Clock,
@@ -34,9 +38,13 @@ from model.steppers import (
 )
 from model.vehicle import System
 
+if TYPE_CHECKING:
+    from scipy.integrate import OdeSolver
+
 LONGEST_STEP = 0.02  # s
 STIFF_STEP = 1e-3  # s
 STIFFER = 1.05  # than at first, when wheels sink in more deeply
+SCIPY_STEPS_PER_CHUNK = 500  # so that a stop is heeded; normally these last for a second and more of simulated time
 RADII_PER_STEP = 0.5  # no step runs past an obstacle
 
 REASON = {
@@ -123,6 +131,10 @@ class Integration:
         self._clock.tally[TAKEN] = end
         return np.arange(first, end) / self.rate, Samples._make(part[: end - first].copy() for part in self.samples)
 
+    def give_up(self) -> None:
+        """End a run that takes too many steps: an endless one sets no bound itself."""
+        self._clock.tally[STATUS] = Status.TOO_MANY_STEPS
+
     def _stiffest_rate(self) -> float:
         """Largest −λ of the system linearised where it is now, 1/s."""
         return stiffest_rate(self.lanes, self.road, self.t, self.y, self._work, self._stages, self._spare[0])
@@ -165,8 +177,8 @@ class Integration:
         return self.status
 
     def _advance_scipy(self, t_stop: float) -> None:
-        """One of SciPy's solvers on the same right-hand side, for comparison."""
-        from scipy.integrate import solve_ivp  # half a second that no other stepper needs
+        """Some steps of one of SciPy's solvers on the same right-hand side, for comparison."""
+        from scipy import integrate  # half a second that no other stepper needs
 
         time, count = self._clock
         dy, place, state = self._stages[0], coordinates(self.system), np.zeros_like(self.y)
@@ -180,45 +192,49 @@ class Integration:
             rates(self.lanes, self.road, t, whole(y), dy, self._work)
             return dy[place]
 
-        wanted = np.arange(count[SAMPLES], count[TAKEN] + len(self.samples.residual)) / self.rate
-        wanted = wanted[wanted <= t_stop + 1e-12]
         try:
-            solution = solve_ivp(
+            solver = getattr(integrate, SCIPY_METHODS[self.integrator])(
                 right_hand_side,
-                (time[NOW], t_stop),
+                float(time[NOW]),
                 self.y[place],
-                method=SCIPY_METHODS[self.integrator],
+                t_stop,
                 rtol=max(self.rtol, 3e-14),
                 atol=self._scale[place],
                 max_step=self._longest(),
-                dense_output=True,
             )
+            for _ in range(SCIPY_STEPS_PER_CHUNK):
+                if solver.status != "running" or count[STATUS] != Status.RUNNING:
+                    break
+                before = solver.t
+                solver.step()
+                if solver.status == "failed":
+                    count[STATUS] = Status.SOLVER_FAILED
+                    break
+                self._take_step(solver, before, whole)
+            count[EVALUATIONS] += solver.nfev
         except (ValueError, IndexError, ArithmeticError):  # how they meet a state that is no longer finite
             count[STATUS] = Status.SOLVER_FAILED
-            return
-        reached = solution.t[-1]
-        for t in wanted[wanted <= reached + 1e-12]:
-            record(
-                self.lanes,
-                self.road,
-                t,
-                whole(solution.sol(min(t, reached))),
-                dy,
-                self._work,
-                self.samples,
-                count[SAMPLES] - count[TAKEN],
-            )
-            count[SAMPLES] += 1
-        time[NOW] = reached
-        self.y = whole(solution.y[:, -1])
-        count[STEPS] += len(solution.t) - 1
-        count[EVALUATIONS] += solution.nfev
-        if len(solution.t) > 1:
-            time[SMALLEST] = min(time[SMALLEST], np.diff(solution.t).min())
-        found = trouble(self.lanes, self.y)
+
+    def _take_step(self, solver: OdeSolver, before: float, whole: Callable[[np.ndarray], np.ndarray]) -> None:
+        """Book a step of a SciPy solver, from `before` to where it stands, and record the samples in it."""
+        time, count = self._clock
+        found = trouble(self.lanes, whole(solver.y))
         if found:
             count[STATUS] = found
-        elif not solution.success:
-            count[STATUS] = Status.SOLVER_FAILED
-        elif reached >= self.duration:
+            return
+        room = count[TAKEN] + len(self.samples.residual)
+        if count[SAMPLES] < room and count[SAMPLES] / self.rate <= solver.t:
+            within = solver.dense_output()
+            while count[SAMPLES] < room and count[SAMPLES] / self.rate <= solver.t:
+                t = count[SAMPLES] / self.rate
+                row = count[SAMPLES] - count[TAKEN]
+                record(self.lanes, self.road, t, whole(within(t)), self._stages[0], self._work, self.samples, row)
+                count[SAMPLES] += 1
+        time[NOW] = solver.t
+        self.y = whole(solver.y).copy()
+        count[STEPS] += 1
+        time[SMALLEST] = min(time[SMALLEST], solver.t - before)
+        if solver.t >= self.duration:
             count[STATUS] = Status.COMPLETE
+        elif count[STEPS] > self.duration * STEPS_PER_SECOND:
+            count[STATUS] = Status.TOO_MANY_STEPS

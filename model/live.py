@@ -20,6 +20,7 @@ from model.road import build_road
 from model.road_search import RoadTable
 from model.road_table import REACH
 from model.simulate import starting_state, warm_up
+from model.steppers import STEPS_PER_SECOND
 from model.trajectory import RunStatistics, Trajectory
 from model.vehicle import System, build_system
 
@@ -31,6 +32,7 @@ LAID = 4.0  # m ahead of the first wheel's reach for which the road is laid at o
 STRIDE = 0.05  # s driven at most until it is looked at whether there is road enough
 REBASE = 1000.0  # m: driven further than this, the origin moves along, so that no digits are lost
 CHANGEABLE = ("road_suspension", "imaginary_suspension", "seat")  # of the vehicle: what may change under way
+GRACE = 1.0  # s: an advance may take as many steps as a run of its length and this may
 CAPACITY = 4000  # samples between two calls of advance
 
 
@@ -140,10 +142,13 @@ class LiveDrive:
         run = self._run
         if run.y[0] > REBASE:
             self._move_origin(REBASE)
+        most_steps = run.steps + run.rejected_steps + STEPS_PER_SECOND * (until - run.t + GRACE)
         while run.t < until and run.status is Status.RUNNING:
             if self._runs_out():
                 run.change(run.system, self._lay(run.system, run.y, anew=False))
             run.advance(min(until, run.t + STRIDE))
+            if run.steps + run.rejected_steps > most_steps:
+                run.give_up()
         taken = run.take_samples()
         if len(taken[0]):
             self._past.append(taken)

@@ -12,13 +12,14 @@ from itertools import pairwise
 
 import numpy as np
 
+from model.profile import distinct
 from model.road import Derivatives, Piece, Profile, Road
 from model.road_search import RoadTable
+from model.road_table import SAME
 
 BLEND = 3.0  # m over which a new shape takes the old one's place
 GAP = 20.0  # m of level road until a road with an end comes again
 MOVED = 0.1  # of the way between two comings: a place that is too near by less moves on a little
-SAME = 1e-7  # m: places as close as this are one
 SMOOTH = (1e-9, 1e-4)  # jumps of h′ and, m⁻¹, of h″ that are none
 
 
@@ -155,8 +156,8 @@ class Shapes:
                 blend = np.array([shape.start, shape.start + BLEND])
                 nodes += [*pieces, _between(blend, first, last)]
                 ends += [piece[[0, -1]] for piece in pieces if len(piece)]
-        x = _distinct(np.concatenate(nodes))
-        breaks = _distinct(np.concatenate(ends))
+        x = distinct(np.concatenate(nodes))
+        breaks = distinct(np.concatenate(ends))
         breaks = breaks[(breaks > low + SAME) & (breaks < high - SAME)]
         sides = self._aside(np.tile(breaks, 2), np.repeat([-SAME, SAME], len(breaks)))
         slope_jump, bend_jump = (np.abs(np.diff(part.reshape(2, -1), axis=0)[0]) for part in sides[1:])
@@ -205,9 +206,3 @@ def _comings(nodes: np.ndarray, every: float, low: float, high: float) -> range:
     """0, 1, …: which repetitions of nodes lie between two x, in part at least."""
     first, last = np.floor((low - nodes[-1]) / every), np.ceil((high - nodes[0]) / every)
     return range(max(int(first), 0), max(int(last), 0) + 1)
-
-
-def _distinct(x: np.ndarray) -> np.ndarray:
-    """Rising, without those that are the same."""
-    x = np.unique(x)
-    return x[np.append(True, np.diff(x) > SAME)] if len(x) else x

@@ -45,6 +45,7 @@ def read_csv(data: bytes) -> str:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise PointsError("the file is not UTF-8 text") from None
+    text = text.replace("\r\n", "\n").replace("\r", "\n")
     text = text.replace(",", "." if ";" in text or "\t" in text else " ").replace(";", " ")
     lines = text.split("\n")
     number = [k for k, line in enumerate(lines, 1) if line and not line.isspace()]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from model.road_table import quintics
+from model.road_table import SAME, quintics
 
 Derivatives = tuple[np.ndarray, np.ndarray, np.ndarray]
 
@@ -51,3 +51,9 @@ def spline(nodes: np.ndarray, h: np.ndarray, h1: np.ndarray, h2: np.ndarray) -> 
         )
 
     return Piece(nodes, derivatives)
+
+
+def distinct(x: np.ndarray) -> np.ndarray:
+    """Rising, without those that are the same."""
+    x = np.unique(x)
+    return x[np.append(True, np.diff(x) > SAME)] if len(x) else x

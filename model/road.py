@@ -19,7 +19,7 @@ from model.config import Config
 from model.profile import Derivatives, Piece, Profile
 from model.random_road import random_profile
 from model.road_search import RoadTable, nearest_points
-from model.road_table import CELLS_PER_RADIUS, tabulate
+from model.road_table import CELLS_PER_RADIUS, tabulate, tame_parts
 
 __all__ = ["Derivatives", "Piece", "Profile", "Road", "build_road"]
 
@@ -49,8 +49,14 @@ class Road:
                 break
             if within < len(piece.nodes):
                 period = 0.0
-            x = _refined(piece.nodes[:within], self.radius / CELLS_PER_RADIUS)
-            rows.append((x, *piece.derivatives(x)))
+            nodes = piece.nodes[:within]
+            x = _cut(nodes, np.ceil(np.diff(nodes) * CELLS_PER_RADIUS / self.radius))
+            row = (x, *piece.derivatives(x))
+            parts = tame_parts(row, self.radius)
+            if (parts > 1).any():
+                x = _cut(x, parts)
+                row = (x, *piece.derivatives(x))
+            rows.append(row)
         if not rows:
             x = np.array([0.0, 1.0])
             rows, period = [(x, *self.derivatives(x))], 0.0
@@ -124,10 +130,9 @@ _random = lru_cache(maxsize=4)(random_profile)
 _measured = lru_cache(maxsize=4)(shapes.measured)
 
 
-def _refined(nodes: np.ndarray, longest: float) -> np.ndarray:
-    """The nodes, with every gap cut into equal parts no longer than asked."""
-    gap = np.diff(nodes)
-    parts = np.maximum(1, np.ceil(gap / longest).astype(int))
-    start, size = np.repeat(nodes[:-1], parts), np.repeat(gap / parts, parts)
-    number = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)  # of the part in its gap
+def _cut(nodes: np.ndarray, parts: np.ndarray) -> np.ndarray:
+    """The nodes (K,), with every gap cut into so many equal parts (K − 1,)."""
+    count = np.maximum(parts, 1).astype(int)
+    start, size = np.repeat(nodes[:-1], count), np.repeat(np.diff(nodes) / count, count)
+    number = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)  # of the part in its gap
     return np.append(start + number * size, nodes[-1])

@@ -241,8 +241,11 @@ def nearest(road, X, Y):
             step, h = halley(X, Y, s, h, h1, h2, h3)
             s += step
             if abs(step) < final:
-                # Below the road and far aside, D may have other minima
+                # Below the road, far aside, outside the stretch that holds the nearest point, D may have other minima
                 found = Y > h and abs(s - X) <= road.radius
+                if road.first_stretch[b] < road.first_stretch[b + 1]:
+                    first, last = road.stretch[road.first_stretch[b]]
+                    found = found and road.cell[first, NODE] <= s <= road.cell[last + 1, NODE]
                 break
     if not found and above_floor and road.first_stretch[b] < road.first_stretch[b + 1]:
         s, h = _search_stretches(road, X, Y, b)

@@ -37,6 +37,9 @@ SEARCHED = 0.2  # of the radius: how deep a wheel may sink in until all cells ab
 NARROWEST_BIN = 1 / 32  # of the radius
 SINKING = 0.04  # of the radius: how deep a wheel is taken to have sunk in for a first guess of its contact point
 FINAL_ERROR = 1e-12  # m: of the contact point along the road
+SAME = 1e-7  # m: places as close as this are one; a quintic between them would be made of rounding
+TAME = 8.0  # times 1/radius: by how much h″ may differ in a cell that is hollow somewhere …
+MOST_PARTS = 32  # … unless it has been cut into so many parts: then hardly more than rounding is missed
 
 
 Row = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # x, h, h′, h″ at nodes
@@ -113,6 +116,19 @@ def tabulate(rows: list[Row], period: float, radius: float) -> RoadTable:
     )
 
 
+def tame_parts(row: Row, radius: float) -> np.ndarray:
+    """Into how many parts (C,) each cell is to be cut, so that none hides a minimum of D from what looks at its ends.
+
+    Between measured points that climb a kerb h″ rises, falls and is nothing at both ends: a wheel on the shoulder
+    inside would be seen by neither, nor by the judgement of whether D is convex.
+    """
+    size = np.diff(row[0])
+    bend = _bends(quintics(size, row[1:]), size)
+    variation = radius * (bend.max(axis=0) - bend.min(axis=0))
+    parts = np.minimum(np.ceil(variation / TAME), np.minimum(MOST_PARTS, size / SAME))
+    return np.where(bend.max(axis=0) > 0.0, parts, 1)
+
+
 def _level(x: np.ndarray, height: float) -> Row:
     return x, np.full(x.shape, height), np.zeros(x.shape), np.zeros(x.shape)
 
@@ -136,10 +152,15 @@ def quintics(size: np.ndarray, ends: tuple[np.ndarray, np.ndarray, np.ndarray]) 
 
 
 def _curvature(coefficients: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Bounds (C,) on h″ and on −h″ in each cell, not below 0: h″ lies between its Bernstein coefficients."""
+    """Bounds (C,) on h″ and on −h″ in each cell, not below 0."""
+    bend = _bends(coefficients, size)
+    return np.maximum(bend.max(axis=0), 0.0), np.maximum(-bend.min(axis=0), 0.0)
+
+
+def _bends(coefficients: np.ndarray, size: np.ndarray) -> np.ndarray:
+    """Bernstein coefficients (4, C) of h″ in each cell: it lies between them."""
     p0, p1, p2, p3 = ((order + 1) * (order + 2) * coefficients[:, order + 2] * size**order for order in range(4))
-    bernstein = np.stack([p0, p0 + p1 / 3, p0 + 2 * p1 / 3 + p2 / 3, p0 + p1 + p2 + p3])
-    return np.maximum(bernstein.max(axis=0), 0.0), np.maximum(-bernstein.min(axis=0), 0.0)
+    return np.stack([p0, p0 + p1 / 3, p0 + 2 * p1 / 3 + p2 / 3, p0 + p1 + p2 + p3])
 
 
 class Cells(NamedTuple):

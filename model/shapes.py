@@ -15,8 +15,10 @@ import numpy as np
 from model import config as configuration
 from model.parameters import STEEPEST
 from model.points import points
-from model.profile import Derivatives, Piece, Profile, level, ramp, spline
+from model.profile import Derivatives, Piece, Profile, distinct, level, ramp, spline
+from model.road_table import SAME
 
+SHORTEST_RAMP = 1e-4  # m: over less, waves grow at once
 CELLS_PER_WAVE = 128  # a quintic of this length misses a sine by 1e-13 of its amplitude
 
 
@@ -27,6 +29,7 @@ def flat() -> Profile:
 def sine(road: configuration.SineRoad, x_s: float) -> Profile:
     """h = A w sin(2π (x − x_s)/λ); w rises from 0 to 1 over the ramp ℓ."""
     rise = road.wavelength if road.ramp is None else road.ramp
+    rise = rise if rise > SHORTEST_RAMP else 0.0
     A, k = road.amplitude, 2 * np.pi / road.wavelength
 
     def wave(x: np.ndarray) -> Derivatives:
@@ -127,8 +130,7 @@ def total(profiles: list[Profile], reach: float, finest: float) -> Profile:
         last = max(last + 1.0, reach)
     lines = [_line(profile, last + period, finest) for profile in profiles]
     ends = [piece.nodes[[0, -1]] for line in lines for piece in line]
-    splits = np.unique(np.concatenate([[last, last + period], *ends]))
-    splits = splits[np.append(True, np.diff(splits) > 1e-9)]
+    splits = distinct(np.concatenate([[last, last + period], *ends]))
     return Profile([_sum_of(lines, a, b) for a, b in pairwise(splits)], period)
 
 
@@ -158,8 +160,8 @@ def _sum_of(lines: list[list[Piece]], low: float, high: float) -> Piece:
             parts.append(_held(line[-1], -1))
         else:
             parts.append(next(piece for piece in line if piece.nodes[0] < middle < piece.nodes[-1]))
-    inside = [part.nodes[(part.nodes > low + 1e-9) & (part.nodes < high - 1e-9)] for part in parts]
-    nodes = np.unique(np.concatenate([[low, high], *inside]))
+    inside = [part.nodes[(part.nodes > low + SAME) & (part.nodes < high - SAME)] for part in parts]
+    nodes = distinct(np.concatenate([[low, high], *inside]))
 
     def derivatives(x: np.ndarray) -> Derivatives:
         h, h1, h2 = np.zeros(x.shape), np.zeros(x.shape), np.zeros(x.shape)

@@ -14,7 +14,11 @@ from zipfile import BadZipFile
 import numpy as np
 
 from model.config import Config, dump_config, parse_config
+from model.files import write_whole
 from model.vehicle import System, build_system
+
+LARGEST = 1e50  # of a file's numbers: far above any run's, and their fourth powers can still be added up
+LONGEST_TEXT = 300  # characters of a file's status and advice
 
 
 @dataclass(frozen=True)
@@ -63,16 +67,9 @@ class Trajectory:
         Raises ValueError for another suffix, OSError when it cannot be written; a file is there whole or not at all.
         """
         path = Path(path)
-        writers = {".npz": self._write_npz, ".csv": self._write_csv}
-        if path.suffix not in writers:
+        if path.suffix not in (".npz", ".csv"):
             raise ValueError(f"cannot save a run as {path.name!r}: the name must end in .npz or .csv")
-        partial = path.with_name(f".{path.name}.part")
-        try:
-            with partial.open("wb") as file:
-                writers[path.suffix](file)
-            partial.replace(path)
-        finally:
-            partial.unlink(missing_ok=True)
+        write_whole(path, self.to_bytes(path.suffix))
 
     @classmethod
     def load(cls, path: str | Path | IO[bytes], name: str = "") -> Trajectory:
@@ -85,16 +82,26 @@ class Trajectory:
         try:
             with np.load(path, allow_pickle=False) as file:
                 arrays = {name: file[name] for name in file.files}
-            counters = RunStatistics(**{f.name: arrays.pop(f.name).item() for f in fields(RunStatistics)})
-            texts = {key: str(arrays.pop(key)) for key in _TEXTS}
+            counters = {f.name: arrays.pop(f.name).item() for f in fields(RunStatistics)}
+            texts = {key: arrays.pop(key).item() for key in _TEXTS}
             parts = {key: arrays[key] for key in _ARRAYS}
         except (KeyError, TypeError, ValueError, EOFError, RuntimeError, BadZipFile, zlib.error) as error:
             raise ValueError(no_run) from error
-        config = parse_config(texts["config"], source=f"{name}: config")
+        config = parse_config(str(texts.pop("config")), source=f"{name}: config")
+        for key, value in counters.items():
+            if type(value) not in (int, float) or not (value > 0 or (value == 0 and type(value) is int)):
+                raise ValueError(f"{no_run}: {key} must be a positive number")
+        for key, text in texts.items():
+            if not isinstance(text, str) or not text.isprintable() or len(text) > LONGEST_TEXT:
+                raise ValueError(f"{no_run}: {key} must be a text of at most {LONGEST_TEXT} printable characters")
         for key, shape in _shapes(build_system(config), parts["t"].size).items():
-            if parts[key].shape != shape or parts[key].dtype != float or not np.isfinite(parts[key]).all():
+            sound = parts[key].shape == shape and parts[key].dtype == float and (np.abs(parts[key]) < LARGEST).all()
+            if not sound:
                 raise ValueError(f"{no_run}: {key} must hold {shape} finite numbers")
-        return cls(**parts, config=config, status=texts["status"], advice=texts["advice"], statistics=counters)
+        rate = config.simulation.output_rate
+        if not np.allclose(parts["t"], np.arange(parts["t"].size) / rate):
+            raise ValueError(f"{no_run}: t must begin at 0 and grow by 1/{rate:g} s")
+        return cls(**parts, **texts, config=config, statistics=RunStatistics(**counters))
 
     def to_bytes(self, suffix: str) -> bytes:
         """The content of the file that `save` would write: ".npz" or ".csv"."""

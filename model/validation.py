@@ -106,7 +106,7 @@ def _checked_part(part: Any, number: int, values: dict[str, Value], faults: list
             faults.append(Fault(name + fault.path[4:], fault.value, fault.message.replace("road.", f"{name}.")))
         elif fault not in faults:
             faults.append(Fault(name, fault.value, fault.message))
-    return {path.removeprefix("road."): value for path, value in road.items()}
+    return {"type": PARAMETER["road.type"].default} | {path[5:]: value for path, value in road.items()}
 
 
 def unknown_fault(path: str, value: Any) -> Fault:
@@ -157,7 +157,7 @@ def _flatten(given: Any, section: str, faults: list[Fault]) -> Iterator[tuple[st
         faults.append(Fault(section, shorten(given), message))
         return
     for key, value in given.items():
-        word = key if isinstance(key, str) else shorten(key)
+        word = key if isinstance(key, str) and key else shorten(key)
         path = f"{section}.{word}" if section else word
         if path in PARAMETER:
             yield path, value

@@ -26,6 +26,9 @@ def parse_yaml(text: str) -> Any:
     loader = _Loader(text)
     try:
         return loader.get_single_data()
+    except (ValueError, OverflowError):  # how PyYAML meets "\U00110000", "%YAML 1.999…" with thousands of digits
+        problem = "a character or a number that does not exist"
+        raise yaml.MarkedYAMLError(problem=problem, problem_mark=loader.get_mark()) from None
     finally:
         loader.dispose()
 

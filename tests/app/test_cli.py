@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import signal
 import subprocess
 import sys
@@ -120,12 +121,13 @@ def test_a_profile_is_read_where_the_command_is_given(tmp_path, monkeypatch):
 def test_bad_input_names_all_faults_and_writes_nothing(tmp_path):
     path, out = tmp_path / "bad.yaml", tmp_path / "run.npz"
     path.write_text("drive: {speed: 3, speed_kmh: fast}\nvehicle: {chassis: {mass: -1}}")
-    result = trackride("run", path, "--set", "oops", "--set", "road.start=[1", "--out", out)
+    result = trackride("run", path, "--set", "oops", "--set", "road.start=[1", "--set", "=5", "--out", out)
     assert result.exit_code == 2
     assert result.stdout == ""
     assert result.stderr.splitlines() == [
         "--set oops: give KEY=VALUE, such as drive.speed_kmh=25",
         "--set road.start=[1: line 1, column 3: expected ',' or ']', but got '<stream end>'",
+        "--set =5: give KEY=VALUE, such as drive.speed_kmh=25",
         f"{path}: drive.speed: unknown key; the nearest known one is drive.speed_kmh",
         f"{path}: drive.speed_kmh: 'fast' is not allowed; give a number from 0.5 to 100 km/h",
         f"{path}: vehicle.chassis.mass: -1 is not allowed; give a number from 1 to 100000 kg",
@@ -150,6 +152,7 @@ def test_every_command_refuses_bad_input(command):
         ("missing/run.npz", "No such file or directory"),
         ("file/run.csv", "Not a directory"),
         ("folder.npz", "is a folder"),
+        ("x" * 300 + ".npz", "File name too long"),
     ],
 )
 def test_where_nothing_can_be_written_nothing_is_computed(tmp_path, monkeypatch, name, words):
@@ -212,6 +215,38 @@ def test_a_progress_bar_stands_on_a_terminal(monkeypatch):
     assert "[red]Tricky" in result.stderr
     assert "%" in result.stderr
     assert "Tricky" not in trackride("run", *SHORT).stdout
+
+
+# Report
+
+
+def test_a_report_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatch):
+    def half(self: Path, content: bytes) -> None:
+        with self.open("wb") as file:
+            file.write(content[:100])
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    out = tmp_path / "report.html"
+    out.write_text("the old one")
+    monkeypatch.setattr(Path, "write_bytes", half)
+    result = trackride("report", *SHORT, "--out", out)
+    assert result.exit_code == 1
+    assert f"cannot write {out}: No space left on device" in result.stderr
+    assert out.read_text() == "the old one"
+    assert list(tmp_path.iterdir()) == [out]
+
+
+def test_standard_output_that_cannot_be_written(monkeypatch, capsys):
+    """As `trackride show > FILE` on a full disk."""
+
+    def full(prog_name: str) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(cli, "cli", full)
+    with pytest.raises(SystemExit) as left:
+        cli.main()
+    assert left.value.code == 1
+    assert capsys.readouterr().err == "cannot go on: No space left on device\n"
 
 
 # Explore

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from model import simulate
+from model import integrate, simulate
 from model.config import Config
 from model.equilibrium import rest_pose
 from model.integrate import ADAPTIVE, ADVICE, REASON, SCIPY_METHODS, Integration, Status
@@ -343,6 +343,20 @@ def test_a_stiff_run_is_stopped_as_soon():
     run = simulate(PAPER.replace(stiff), should_stop=lambda: True)
     assert run.status == "cancelled"
     assert run.statistics.steps + run.statistics.rejected_steps <= 5_000
+
+
+@pytest.mark.parametrize("integrator", SCIPY_METHODS)
+def test_scipys_solvers_look_up_as_well(integrator, monkeypatch):
+    """However many steps they take for a stretch; then they go on where they were, and have a bound."""
+    monkeypatch.setattr(integrate, "SCIPY_STEPS_PER_CHUNK", 20)
+    run = start(FLAT, integrator=integrator)
+    assert run.advance(0.5) is Status.RUNNING
+    assert run.steps == 20
+    whole = finish(start(FLAT)).samples
+    assert finish(run).status is Status.COMPLETE
+    np.testing.assert_allclose(run.samples.q, whole.q, atol=1e-4)
+    monkeypatch.setattr(integrate, "STEPS_PER_SECOND", 20)
+    assert finish(start(FLAT, integrator=integrator)).status is Status.TOO_MANY_STEPS
 
 
 def test_an_integration_leaves_its_starting_state_alone():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from model import load_config, simulate
-from model.integrate import Status
+from model.integrate import ADVICE, REASON, Status
 from model.live import AHEAD, JOIN_AHEAD, REBASE, LiveDrive
 
 PAPER = load_config("paper")
@@ -134,3 +134,18 @@ def test_frames_shorter_than_a_sample_do_no_harm():
     recent = drive.recent()
     assert np.diff(recent.t) == pytest.approx(0.005)
     assert recent.t[-1] == pytest.approx(0.2, abs=0.01)
+
+
+def test_a_drive_that_became_too_stiff_ends_and_says_why():
+    """A run has a bound on its steps; a drive without end must not hold its thread for ever either."""
+    light = PAPER.replace({"vehicle.road_wheels.mass": 1.0})
+    drive = LiveDrive(light)
+    drive_on(drive, 0.5)
+    assert drive.change(light.replace({"contact.tangential_damping": 1e8}))
+    drive.advance(drive.time + 1 / 30)
+    assert drive.status is Status.TOO_MANY_STEPS
+    assert drive.recent().status.endswith(REASON[Status.TOO_MANY_STEPS])
+    assert drive.recent().advice == ADVICE[Status.TOO_MANY_STEPS]
+    assert not drive.change(PAPER)
+    drive_on(drive, 0.1)
+    assert drive.status is Status.RUNNING

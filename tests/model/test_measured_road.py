@@ -31,6 +31,7 @@ def road_through(text: str, start: float | None = None) -> Road:
         "x,y\n0,0\n1.5,0.25\n3,-1e-2\n",
         "x [m]; y [m]\n0;0\n1.5;0.25\n3;-0.01",
         "0;0\r\n1,5;0,25\r\n3;-0,01\r\n",
+        "x,y\r0,0\r1.5,0.25\r3,-0.01\r",
         "\ufeff0\t0\n\n1.5\t.25\n  \n3\t-0.01\n",
         "0 0\n 1.5   0.25\n3 -0.01",
         "0, 0\n1.5, 0.25\n3, -0.01",
@@ -205,6 +206,15 @@ def test_nearest_point_on_measured_profiles(seed):
     y[1:][slope > 10] = 0.0
     road = road_through(points_text(x, np.clip(y, -0.2, 0.2)))
     assert_nearest(road, centres_near(road, rng, rng.uniform(4.0, x[-1] + 1.0, 30)))
+
+
+@pytest.mark.parametrize("radius", [0.16, 0.32, 1.0])
+@pytest.mark.parametrize("kerb", ["5.01 0.1, 5.02 0.1", "5.03 0.05, 5.06 0.05", "5.03 -0.05, 5.06 -0.05"])
+def test_a_wheel_rests_on_the_shoulder_of_a_kerb_that_was_measured_finely(kerb, radius):
+    """All of the kerb lies between two points: at either, its line is level and straight."""
+    road = Road(measured(ProfileRoad(points=f"0 0, 5 0, {kerb}, 9 {kerb.split()[-1]}")), radius)
+    rng = np.random.default_rng(0)
+    assert_nearest(road, centres_near(road, rng, rng.uniform(5.0 - radius, 5.05 + radius, 25)), tolerance=1e-9)
 
 
 def test_ten_kilometres_are_read_and_ready_quickly(tmp_path):

@@ -300,3 +300,9 @@ def test_the_search_stays_inside_the_table_wherever_a_wheel_is(x):
             with np.errstate(all="ignore"):
                 _, cell = road_search._guessed.py_func(table, b, x, 0.3)
             assert 0 <= cell <= len(table.cell) - 1
+
+
+@pytest.mark.parametrize("ramp", [1e-300, 1e-15, 1e-9])
+def test_a_ramp_of_no_length_is_none(ramp):
+    tiny, none = (build_road(PAPER.replace({"road.ramp": length})) for length in (ramp, 0.0))
+    np.testing.assert_array_equal(tiny.table.cell, none.table.cell)

@@ -9,6 +9,8 @@ import pytest
 
 from model.config import ConfigError, RandomRoad, dump_config, parse_config
 from model.road import Road, build_road
+from model.road_search import HEIGHT, NEXT, NODE
+from model.road_table import SAME
 from model.simulate import simulate
 from tests.model.nearest import assert_nearest, centres_near
 from tests.model.support import PAPER
@@ -50,6 +52,14 @@ def test_heights_add_up(name):
         summed(parts).derivatives(x), *(alone(part).derivatives(x) for part in parts), strict=True
     ):
         np.testing.assert_allclose(found, np.sum([0 * x, *of_parts], axis=0), atol=1e-9)
+
+
+@pytest.mark.parametrize("name", SUMS)
+def test_no_cell_is_made_of_rounding(name):
+    """Where nodes of two parts fall on the same place but for the last digit."""
+    cell = summed(SUMS[name]).table.cell
+    assert np.diff(cell[:, NODE]).min() > SAME / 2
+    assert np.isfinite(cell[:, HEIGHT:NEXT]).all()
 
 
 @pytest.mark.parametrize("name", SUMS)
@@ -115,3 +125,8 @@ def test_parts_are_checked_under_the_vehicle_that_is_given(wheels, faults):
     with pytest.raises(ConfigError) as error:
         parse_config(f"{{vehicle: {{road_wheels: {{{wheels}}}}}, road: {{type: sum, parts: {parts}}}}}")
     assert [fault.path for fault in error.value.faults] == faults
+
+
+def test_a_part_without_a_type_is_a_sine_as_a_road_is():
+    road = parse_config("road: {type: sum, parts: [{}, {amplitude: 0.2}]}").road
+    assert [(part.type, part.amplitude) for part in road.parts] == [("sine", 0.1), ("sine", 0.2)]

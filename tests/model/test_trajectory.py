@@ -140,12 +140,12 @@ def test_a_file_is_written_whole_or_not_at_all(run, tmp_path, suffix, monkeypatc
     path = tmp_path / f"run{suffix}"
     path.write_bytes(b"what was there before")
 
-    def half(self: Trajectory, file: BytesIO) -> None:
-        file.write(b"half a")
+    def half(self: Path, content: bytes) -> None:
+        with self.open("wb") as file:
+            file.write(content[:100])
         raise OSError("no space left")
 
-    monkeypatch.setattr(Trajectory, "_write_npz", half)
-    monkeypatch.setattr(Trajectory, "_write_csv", half)
+    monkeypatch.setattr(Path, "write_bytes", half)
     with pytest.raises(OSError, match="no space left"):
         run.save(path)
     assert path.read_bytes() == b"what was there before"
@@ -218,6 +218,15 @@ def test_nothing_is_unpickled(run, tmp_path):
         ("v", lambda v: v.astype(str)),
         ("a", lambda a: np.full_like(a, np.nan)),
         ("multipliers", lambda lam: lam.astype(complex)),
+        ("q", lambda q: 1e200 * q),
+        ("t", lambda t: t - 1.0),
+        ("t", lambda t: t[::-1]),
+        ("seconds", lambda seconds: 0.0 * seconds),
+        ("seconds", lambda seconds: "long"),
+        ("steps", lambda steps: np.nan),
+        ("status", lambda status: "complete\n" + status),
+        ("status", lambda status: "x" * 10_000),
+        ("advice", lambda advice: np.array(["a", "b"])),
     ],
 )
 def test_arrays_that_do_not_fit_the_configuration_are_refused(run, tmp_path, name, change):

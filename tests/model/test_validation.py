@@ -136,15 +136,24 @@ vehicle:
         ("a: " + "[" * 5000, "nested deeper than 20 levels"),
         ("\n".join(" " * i + "a:" for i in range(100)), "nested deeper than 20 levels"),
         ("a: [" + "1, " * 3000 + "]", "more than 2000 keys and values"),
-        ("name: a\n---\nname: b", "but found another document"),
-        ("name: \x00", "not YAML text"),
-        ("name: \ud800", "not YAML text"),
+        ("name: a\n---\nname: b", "line 2, column 1: a second document; give one"),
+        ("drive:\n\tspeed_kmh: 3", "line 2, column 1: a tab; indent with blanks"),
+        ("name: a: b", "line 1, column 8: a colon too many"),
+        ("# a\nname: \x00", "line 2: not YAML text: the character U+0000 is not allowed"),
+        ("name: \ud800", "line 1: not YAML text: the character U+D800 is not allowed"),
+        (r'name: "\U00110000"', "line 1, column 10: a character or a number that does not exist"),
+        (r'name: "\UFFFFFFFF"', "a character or a number that does not exist"),
+        ("%YAML 1." + "9" * 5000 + "\n---\n", "a character or a number that does not exist"),
     ],
 )
 def test_faults_of_the_text_itself(text, words):
     path, message = only_fault(text)
     assert path == ""
     assert words in message
+
+
+def test_a_key_without_a_name_is_shown():
+    assert set(faults("'': 1\ndrive: {'': 1}")) == {"''", "drive.''"}
 
 
 def test_all_faults_at_once():
