@@ -120,6 +120,7 @@ class ImaginarySuspension(Section):
 
 
 class Vehicle(Section):
+    hull: str = _field("vehicle.hull")
     chassis: Chassis = Chassis()
     seat: Seat = Seat()
     road_wheels: RoadWheels = RoadWheels()

@@ -112,6 +112,7 @@ INTEGRATORS = (
     "stretched-rk43", "dormand-prince", "rk4", "scipy-rk45", "scipy-dop853", "scipy-radau", "scipy-lsoda", "scipy-bdf",
 )  # fmt: skip
 ROADS = ("flat", "sine", "half_round", "trapezoid", "step", "random", "profile", "sum")
+HULLS = ("turret", "carrier", "plain")
 KILO_N_PER_M, KILO_N_S_PER_M, MILLIMETRES = ("kN/m", 1e-3), ("kN s/m", 1e-3), ("mm", 1e3)
 # Unit of a rate at the wheel -> unit and shown unit of the rate about the joint
 TORSIONAL: dict[str, tuple[str, tuple[str, float] | None]] = {
@@ -130,6 +131,10 @@ PARAMETERS: tuple[Parameter, ...] = (
         group=NOTES, source=OURS, kind="text",
         description="What this configuration is, in a sentence or two."),
 
+    Parameter("vehicle.hull", "Hull drawn", "", "", "turret",
+        group=VEHICLE, source=OURS, kind="choice", choices=HULLS,
+        description="Shape in which the hull is drawn; nothing is computed from it. turret: low, with a turret and a "
+        "gun; carrier: a box with a sloped front; plain: flat, as of a robot."),
     Parameter("vehicle.chassis.mass", "Hull mass", "m_c", "kg", 5125.0, 1, 100000, 1000, 20000, 25,
         group=VEHICLE, source=PAPER_TABLE,
         description="Sprung mass carried by one side's wheels: half of the hull.",

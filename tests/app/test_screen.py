@@ -114,7 +114,7 @@ def test_neither_card_nor_player_hides_the_vehicle(width: int, height: int, view
     screen, docked = Screen(width, height), width - LEFT - RIGHT - SEAMS
     sizes = screen.update(docked, height)
     assert sizes is not None
-    layout = layout_of(build_system(load_config("paper")))
+    layout = layout_of(build_system(load_config("paper")), "turret")
     stood = standpoint(view, layout, (width - LEFT - sizes.right - SEAMS) / height)
     upper = heights_in_picture(np.concatenate(hull_edges(layout)), stood, height)
     assert upper.min() > wheel_card.GAP + wheel_card.HEIGHT

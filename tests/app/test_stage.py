@@ -259,7 +259,7 @@ def seen(point: np.ndarray, position: np.ndarray, look_at: np.ndarray, fov: floa
 @pytest.mark.parametrize("view", VIEWS)
 @pytest.mark.parametrize("changes", [{}, {"vehicle.road_wheels.count": 14}, {"vehicle.road_wheels.count": 2}])
 def test_a_view_has_what_it_is_for_in_the_picture(view: Any, aspect: float, changes: dict[str, object]) -> None:
-    vehicle: Layout = layout_of(build_system(load_config("paper").replace(changes)))
+    vehicle: Layout = layout_of(build_system(load_config("paper").replace(changes)), "turret")
     place = standpoint(view, vehicle, aspect)
     s = vehicle.scale
     if view == "wheel":
