@@ -20,6 +20,7 @@ from model.validation import Fault
 PRECISION = 4  # decimals that a box takes and shows
 FINEST_STEP = 10**-PRECISION  # parameters that need finer ones are typed as text: 1e-6
 ONE_EACH = " Here one for each road wheel, front first."
+UNBROKEN = str.maketrans({" ": "\u00a0", "/": "/\u2060"})  # a label may go on in a second line, its unit may not
 IMAGINARY = "vehicle.imaginary_"
 IMAGINARY_SWITCH = "vehicle.imaginary_wheels.enabled"
 
@@ -50,8 +51,9 @@ class Wishes(Protocol):
 
 
 def shown_label(parameter: Parameter) -> str:
-    """Name and unit: "Road stiffness, kN/m"."""
-    return f"{parameter.label}, {parameter.shown_unit}" if parameter.shown_unit else parameter.label
+    """Name and unit: "Road stiffness, kN/m", the unit in one piece."""
+    unit = parameter.shown_unit.translate(UNBROKEN)
+    return f"{parameter.label}, {unit}" if unit else parameter.label
 
 
 def hint(parameter: Parameter) -> str:

@@ -131,7 +131,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         group=NOTES, source=OURS, kind="text",
         description="What this configuration is, in a sentence or two."),
 
-    Parameter("vehicle.hull", "Hull drawn", "", "", "turret",
+    Parameter("vehicle.hull", "Hull shape", "", "", "turret",
         group=VEHICLE, source=OURS, kind="choice", choices=HULLS,
         description="Shape in which the hull is drawn; nothing is computed from it. turret: low, with a turret and a "
         "gun; carrier: a box with a sloped front; plain: flat, as of a robot."),

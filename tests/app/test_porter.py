@@ -266,19 +266,25 @@ def test_the_table_of_figures() -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "text"),
+    ("value", "resolution", "text"),
     [
-        (None, "–"),
-        (0.0, "0"),
-        (0.0912, "0.0912"),
-        (1.346, "1.35"),
-        (18.74, "18.7"),
-        (182.7, "183"),
-        (0.00001, "0.0000"),
+        (None, 0, "–"),
+        (0.0, 0, "0"),
+        (0.0912, 0, "0.0912"),
+        (1.346, 0, "1.35"),
+        (18.74, 0, "18.7"),
+        (182.7, 0, "183"),
+        (0.00001, 0, "0.0000"),
+        (0.09, 0.005, "0.090"),
+        (0.3, 0.1, "0.3"),
+        (1.235, 0.005, "1.24"),
+        (4.0, 1.0, "4"),
     ],
 )
-def test_figures_have_three_digits(value: float | None, text: str) -> None:
-    assert figure_text(value) == text
+def test_figures_have_three_digits_and_none_that_nobody_measured(
+    value: float | None, resolution: float, text: str
+) -> None:
+    assert figure_text(value, resolution) == text
 
 
 @pytest.mark.parametrize(
