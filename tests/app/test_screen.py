@@ -14,6 +14,7 @@ from app.screen import (
     LEFT,
     LOWEST,
     MODES,
+    NARROW,
     PLOTS_HEAD,
     RIGHT,
     SEAMS,
@@ -54,6 +55,14 @@ def test_a_window_made_larger_or_smaller_shares_its_width_anew() -> None:
     assert maximised.player_x + maximised.player_width / 2 == pytest.approx((2560 - LEFT - WIDEST - SEAMS) / 2, abs=3)
     again = screen.update(1280 - LEFT - WIDEST - SEAMS, 720)
     assert again == opened
+
+
+def test_in_a_narrow_window_the_plots_leave_room_for_the_player() -> None:
+    screen = Screen(1024, 768)
+    layout = screen.update(1024 - LEFT - RIGHT - SEAMS, 768)
+    assert layout is not None
+    assert NARROW <= layout.right < RIGHT
+    assert layout.player_x + layout.player_width < 1024 - LEFT - layout.right - SEAMS
 
 
 def test_a_seam_that_is_moved_stays_where_it_is() -> None:
