@@ -58,17 +58,23 @@ def shown_label(parameter: Parameter) -> str:
 
 def hint(parameter: Parameter) -> str:
     """What it is, what happens when it grows, and where it stands in the paper."""
-    parts = [parameter.description]
+    parts = [_in_words(parameter)]
     if parameter.growth:
         parts.append(f"When it grows: {parameter.growth[0].lower()}{parameter.growth[1:]}")
-    if _typed(parameter) and parameter.optional:
-        parts.append("Leave empty for the value computed from the others.")
     if parameter.per_wheel:
         parts.append("One value for all road wheels.")
     facts = [f"Symbol {parameter.symbol}"] if parameter.symbol else []
     facts += [f"unit {parameter.shown_unit}"] if parameter.shown_unit else []
     facts += [f"from {parameter.source}"] if parameter.source.startswith(("Table", "section")) else []
     return " ".join(parts) + (f" ({', '.join(facts)})" if facts else "")
+
+
+def _in_words(parameter: Parameter) -> str:
+    """The description as it reads beside a box: what is left out of a file is an empty box, choices are words."""
+    text = parameter.description.replace("Left out:", "Empty:").replace("left out:", "empty:")
+    for choice in parameter.choices:
+        text = text.replace(choice, choice_words(choice))
+    return text
 
 
 def allowed(parameter: Parameter) -> str:

@@ -83,8 +83,16 @@ class ExportsPanel:
                 hint="The present parameters. Save preset: into the list of presets, under the name above; this "
                 "browser remembers it. Edit YAML: all of them as text, to copy, change or paste.",
             )
-            config = gui.add_upload_button("Open a configuration", mime_type=".yaml,.yml", hint="A YAML file")
-            run = gui.add_upload_button("Open a run as baseline", mime_type=".npz", hint="An NPZ file")
+            config = gui.add_upload_button(
+                "Open a configuration",
+                mime_type=".yaml,.yml",
+                hint="A YAML file, such as Data saves: all parameters follow",
+            )
+            run = gui.add_upload_button(
+                "Open a run as baseline",
+                mime_type=".npz",
+                hint="An NPZ file, such as Data saves: it is compared with what is shown",
+            )
         picture.on_click(by_user(lambda event: exporter.export(PICTURE), fail))
         for group, files in ((figure, FIGURES), (data, DATA), (moving, MOVING)):
             group.on_click(by_user(_exporting(exporter, files), fail))

@@ -170,7 +170,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         growth="The wheels move forward under the hull: front wheels carry less, rear wheels more."),
     Parameter("vehicle.road_wheels.positions", "Wheel positions", "x_i", "m", None, -50, 50,
         group=VEHICLE, source=OURS, kind="list", optional=True,
-        description="Where each road wheel stands ahead of the centre of mass, instead of count, spacing and offset."),
+        description="Where each road wheel stands ahead of the centre of mass; left out: by count, spacing, offset."),
     Parameter("vehicle.road_wheels.radius", "Wheel radius", "r", "m", 0.32, 0.05, 2, 0.15, 0.6, 0.005,
         group=VEHICLE, source=PAPER_TABLE,
         description="Radius of road wheels and imaginary wheels.",
@@ -278,7 +278,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         growth="Imaginary wheels carry more of the weight, road wheels less."),
     Parameter("vehicle.imaginary_suspension.preload_force", "Preload force", "T", "N", None, 0, 1e6, 0, 10000, 50,
         group=TRACK, source=OURS, shown=("kN", 1e-3), optional=True,
-        description="Preload of the imaginary spring as a force at the wheel, instead of the preload deflection.",
+        description="Preload of the imaginary spring as a force at the wheel; left out: by the preload deflection.",
         growth="Imaginary wheels carry more of the weight, road wheels less."),
     Parameter("vehicle.imaginary_suspension.reacts_on", "Reacts on", "", "", "road_arm",
         group=TRACK, source=OURS, kind="choice", choices=("road_arm", "chassis"),
@@ -367,8 +367,8 @@ PARAMETERS: tuple[Parameter, ...] = (
         growth="The faces are less steep: loads peak lower."),
     Parameter("road.roughness_class", "Roughness class", "", "", "C",
         group=ROAD, source=OURS, roads=("random",), kind="choice", choices=tuple("ABCDEFGH"),
-        description="Class of ISO 8608, from A, a very good road, over C, a poor one, to E to H, ground without a "
-        "road; B, D, F, G lie between. Heights double from class to class."),
+        description="Class of ISO 8608: A is a very good road, B a good one, C an average one, D a poor one, E a very "
+        "poor one; F, G and H are ground without a road. Heights double from class to class."),
     Parameter("road.seed", "Seed", "", "", 1, 0, 999999, 0, 1000, 1,
         group=ROAD, source=OURS, roads=("random",), kind="integer",
         description="Number of the random road: the same number gives the same road anywhere.",
