@@ -120,7 +120,6 @@ class ImaginarySuspension(Section):
 
 
 class Vehicle(Section):
-    hull: str = _field("vehicle.hull")
     chassis: Chassis = Chassis()
     seat: Seat = Seat()
     road_wheels: RoadWheels = RoadWheels()
@@ -129,6 +128,7 @@ class Vehicle(Section):
     imaginary_wheels: ImaginaryWheels = ImaginaryWheels()
     imaginary_arms: ImaginaryArms = ImaginaryArms()
     imaginary_suspension: ImaginarySuspension = ImaginarySuspension()
+    hull: str = _field("vehicle.hull")
 
 
 class Contact(Section):

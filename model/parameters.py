@@ -131,10 +131,6 @@ PARAMETERS: tuple[Parameter, ...] = (
         group=NOTES, source=OURS, kind="text",
         description="What this configuration is, in a sentence or two."),
 
-    Parameter("vehicle.hull", "Hull shape", "", "", "turret",
-        group=VEHICLE, source=OURS, kind="choice", choices=HULLS,
-        description="Shape in which the hull is drawn; nothing is computed from it. turret: low, with a turret and a "
-        "gun; carrier: a box with a sloped front; plain: flat, as of a robot."),
     Parameter("vehicle.chassis.mass", "Hull mass", "m_c", "kg", 5125.0, 1, 100000, 1000, 20000, 25,
         group=VEHICLE, source=PAPER_TABLE,
         description="Sprung mass carried by one side's wheels: half of the hull.",
@@ -283,6 +279,10 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter("vehicle.imaginary_suspension.reacts_on", "Reacts on", "", "", "road_arm",
         group=TRACK, source=OURS, kind="choice", choices=("road_arm", "chassis"),
         description="Which body the imaginary spring leans on: road_arm (the paper's model) or chassis."),
+    Parameter("vehicle.hull", "Hull shape", "", "", "turret",
+        group=VEHICLE, source=OURS, kind="choice", choices=HULLS,
+        description="Shape in which the hull is drawn; nothing is computed from it. turret: low, with a turret and a "
+        "gun; carrier: a box with a sloped front; plain: flat, as of a robot."),
 
     Parameter("contact.normal_stiffness", "Ground stiffness", "k_n", "N/m²", 6e7, 1e6, 1e10, 1e6, 2e8, 1e6,
         group=CONTACT, source=ASSUMED, shown=("MN/m²", 1e-6),
