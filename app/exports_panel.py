@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 import viser
@@ -22,6 +23,7 @@ DATA = {"CSV": "run.csv", "NPZ": "run.npz", "YAML": "yaml"}
 MOVING = {"Replay": "replay", "Movie": "movie"}
 CANCEL = "Cancel"
 SAVE, EDIT = "Save preset", "Edit YAML"
+STYLE = f"<style>{(Path(__file__).parents[1] / 'assets' / 'modal.css').read_text()}</style>"  # in each window's HTML
 
 
 class Exporter(Protocol):
@@ -115,7 +117,7 @@ class ExportsPanel:
     def edit_yaml(self, config: Config) -> None:
         """Open the configuration as text in a window of its own."""
         with self._gui.add_modal("Configuration") as modal:
-            self._gui.add_html('<div class="trackride-yaml"></div>')
+            self._gui.add_html(f'<div class="trackride-yaml"></div>{STYLE}')
             text: Any = self._gui.add_text("YAML", dump_config(config), multiline=True)
             faults = self._gui.add_html("")
             use = self._gui.add_button("Use this", hint="Run it; Undo leads back")
@@ -136,7 +138,7 @@ class ExportsPanel:
     def show_faults(self, title: str, error: ConfigError) -> None:
         """Say all that is wrong with a configuration, in a window of its own."""
         with self._gui.add_modal(title) as modal:
-            self._gui.add_html(fault_list(error))
+            self._gui.add_html(fault_list(error) + STYLE)
             close = self._gui.add_button("Close")
         close.on_click(by_user(lambda event: modal.close(), self._exporter.fail))
 

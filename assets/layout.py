@@ -57,6 +57,11 @@ class Layout:
         return self.wheel_x[-1]
 
     @property
+    def length(self) -> float:
+        """From sprocket to idler."""
+        return self.sprocket.x - self.idler.x
+
+    @property
     def middle(self) -> float:
         return (self.front + self.rear) / 2
 

@@ -182,6 +182,7 @@ def test_faults_of_an_uploaded_configuration_are_all_shown_escaped_and_nothing_c
     upload(tab, "Open a configuration", "bad.yaml", text.encode())
     shown = wait_for(lambda: html(tab, "trackride-faults"), "the faults")
     assert shown.count("<li>") == 3
+    assert "<style>" in shown  # those of tabs that nobody has opened are not there
     assert "from 0.5 to 100 km/h" in shown
     assert "the nearest known one is road" in shown
     assert "<img" not in shown
@@ -193,6 +194,7 @@ def test_faults_of_an_uploaded_configuration_are_all_shown_escaped_and_nothing_c
 def test_a_configuration_is_edited_as_text(tab: Tab) -> None:
     tab.use("As they are", "Edit YAML")
     text = tab.widget("YAML")["value"]
+    assert "<style>" in html(tab, "trackride-yaml")
     assert parse_config(text).drive.speed_kmh == 22
     tab.use("YAML", text.replace("speed_kmh: 22", "speed_kmh: 2200"))
     tab.use("Use this", True)

@@ -274,6 +274,18 @@ def test_a_view_has_what_it_is_for_in_the_picture(view: Any, aspect: float, chan
     assert place.position[2] > 0.3 * s
 
 
+def test_the_camera_goes_nearer_to_a_much_smaller_vehicle_only(tab: Tab, paper: Trajectory) -> None:
+    stage = Stage(tab)  # type: ignore[arg-type]
+    stage.show(paper)
+    stage.set_view("front")
+    for preset, moves in (("m113", False), ("robot", True), ("robot", False), ("paper", True)):
+        before = np.array(tab.camera.position)
+        stage.show(simulate(load_config(preset).replace({"simulation.duration": 0.1})))
+        after = np.array(tab.camera.position)
+        assert (np.linalg.norm(after - before) > 1.0) == moves
+        assert after[0] > 2 * abs(after[1])  # still from the front
+
+
 def test_the_camera_fits_a_new_shape_of_the_picture_unless_moved(tab: Tab, paper: Trajectory) -> None:
     stage = Stage(tab)  # type: ignore[arg-type]
     stage.show(paper)
