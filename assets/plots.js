@@ -53,8 +53,9 @@ if (!window.trackridePlots) {
     const shown = Math.abs(low - min) + Math.abs(high - max) <= 1e-6 * (last - first);  // viser makes some charts with 0…1
     if (!shown) chart.setScale('x', {min: low, max: high});
   };
+  const isRun = (curve) => curve.class === 'run';
   const kin = (chart) => {  // a baseline's curve is hidden with the run's
-    const runs = chart.series.filter((curve) => curve.class === 'run');
+    const runs = chart.series.filter(isRun);
     const gone = hidden[[chart.axes[1].label, ...runs.map((curve) => curve.label)]] ??= new Set();
     return [runs, gone];
   };
@@ -63,19 +64,11 @@ if (!window.trackridePlots) {
     if ((kind === 'run' || kind === 'baseline') && show !== wanted) chart.setSeries(k, {show: wanted});
   });
   // Without a graphics processor a line of 1 px is drawn many times faster than a wider one. Three of them, a quarter of
-  // a pixel apart, look like 1.5 px; pale ones would only become darker. Where lines go up and down so often that they
-  // would cover half of the field (rough ground), they stay thin.
-  const AROUND = [[-0.3, 0], [0.15, -0.26], [0.15, 0.26]], PER_STROKE = 3;  // px that a line up or down takes
-  const crowded = (chart, from, to) => {
-    let climbed = 0;
-    const {min, max} = chart.scales.y;
-    chart.series.forEach(({class: kind, show}, k) => {
-      const y = chart.data[k];
-      if (kind === 'run' && show) for (let i = from + 1; i <= to; i++) climbed += Math.abs(y[i] - y[i - 1]);
-    });
-    return climbed / (max - min) > chart.bbox.width / devicePixelRatio / PER_STROKE;
-  };
-  const isClear = (chart, k) => chart.series[k].class === 'run' && /^#\w{6}$/.test(chart.series[k].stroke(chart, k));
+  // a pixel apart, look like 1.5 px; pale ones would only become darker. Curves of many points, which go up and down all
+  // the time (rough ground), stay thin: they would cover each other.
+  const AROUND = [[-0.3, 0], [0.15, -0.26], [0.15, 0.26]];
+  const CROWD = 2500;  // points in view, of all curves
+  const isClear = (chart, k) => isRun(chart.series[k]) && /^#\w{6}$/.test(chart.series[k].stroke(chart, k));
   const thicken = (chart, k) => {
     const curve = chart.series[k], draw = curve.paths;
     if (!isClear(chart, k)) return;
@@ -83,7 +76,7 @@ if (!window.trackridePlots) {
       const paths = draw(...all);
       if (!paths) return paths;
       let {stroke} = paths;
-      if (!crowded(chart, all[2], all[3])) {
+      if ((all[3] - all[2]) * chart.series.filter(isRun).length < CROWD) {
         stroke = new Path2D();
         AROUND.forEach(([e, f]) => stroke.addPath(paths.stroke, {e, f}));
       }
@@ -95,7 +88,7 @@ if (!window.trackridePlots) {
   const PALE = 0.2, picked = new WeakMap(), pointed = new WeakMap();  // chart -> number of its curve
   const notePicked = (chart) => {
     const clear = chart.series.flatMap((_, k) => isClear(chart, k) ? [k] : []);
-    if (clear.length === 1 && chart.series.filter((curve) => curve.class === 'run').length > 1) picked.set(chart, clear[0]);
+    if (clear.length === 1 && chart.series.filter(isRun).length > 1) picked.set(chart, clear[0]);
   };
   const drawInFront = (chart) => {
     const k = pointed.get(chart) ?? picked.get(chart), curve = chart.series[k];
@@ -125,7 +118,7 @@ if (!window.trackridePlots) {
     const legend = chart.root.querySelector('.u-legend');
     legend.title = 'Point at a name to see its curve in front, click it to hide the curve, with Ctrl all others';
     legend.querySelectorAll('.u-series').forEach((name, k) => {
-      if (chart.series[k].class !== 'run') return;
+      if (!isRun(chart.series[k])) return;
       name.addEventListener('mouseenter', () => pointAt(chart, k));
       name.addEventListener('mouseleave', () => pointAt(chart));
     });
@@ -135,7 +128,7 @@ if (!window.trackridePlots) {
     hide(chart);
     chart.redraw();  // with lines as thick as they are to be, also where no other run comes
     (chart.hooks.setSeries ??= []).push((_, k, change) => {
-      if (k === null || change.show === undefined || chart.series[k].class !== 'run') return;
+      if (k === null || change.show === undefined || !isRun(chart.series[k])) return;
       const [runs, gone] = kin(chart);
       runs.forEach(({label, show}) => show ? gone.delete(label) : gone.add(label));
       queueMicrotask(() => hide(chart));

@@ -140,9 +140,9 @@ def test_the_values_at_the_cursor_lie_on_the_curves_between_the_points_that_are_
 def test_curves_are_thicker_than_a_pixel_where_there_is_room(at_rest: Explorer) -> None:
     page = at_rest.page
     show(page, "Loads")
-    page.evaluate(DRAW, [["R2"], [8] * 400])
+    page.evaluate(DRAW, [["R2"], [8] * 200])
     page.wait_for_function(f"() => ({INK})() > 1.25 && ({INK})() < 2")
-    page.evaluate(DRAW, [["R2"], [8] * 40 + [0, 8] * 180])
+    page.evaluate(DRAW, [["R2"], [8] * 50 + [0, 8] * 225])
     page.wait_for_function(f"() => ({INK})() > 0.5 && ({INK})() < 1.1")
 
 
