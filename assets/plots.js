@@ -67,7 +67,7 @@ if (!window.trackridePlots) {
   // a pixel apart, look like 1.5 px; pale ones would only become darker. Curves of many points, which go up and down all
   // the time (rough ground), stay thin: they would cover each other.
   const AROUND = [[-0.3, 0], [0.15, -0.26], [0.15, 0.26]];
-  const CROWD = 2500;  // points in view, of all curves
+  const CROWD = 450;  // points of a curve in view
   const isClear = (chart, k) => isRun(chart.series[k]) && /^#\w{6}$/.test(chart.series[k].stroke(chart, k));
   const thicken = (chart, k) => {
     const curve = chart.series[k], draw = curve.paths;
@@ -76,7 +76,7 @@ if (!window.trackridePlots) {
       const paths = draw(...all);
       if (!paths) return paths;
       let {stroke} = paths;
-      if ((all[3] - all[2]) * chart.series.filter(isRun).length < CROWD) {
+      if (all[3] - all[2] < CROWD) {
         stroke = new Path2D();
         AROUND.forEach(([e, f]) => stroke.addPath(paths.stroke, {e, f}));
       }
