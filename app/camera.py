@@ -15,6 +15,7 @@ View = Literal["side", "three-quarter", "front", "wheel"]
 FIELD_OF_VIEW = 0.36  # rad, vertical: a long lens, so that wheels stay round and heights comparable
 FARTHEST = 150.0  # m: well within the sky
 MARGIN = 1.05  # of what is to be in the picture
+OTHER_SIZE = 1.5  # times as long: a vehicle for which the camera goes nearer or further away
 
 
 class Standpoint(NamedTuple):
@@ -116,6 +117,11 @@ class Camera:
             self._camera.up_direction = (0.0, 0.0, 1.0)
             self._camera.position = self._stood.position
             self._camera.look_at = self._stood.look_at
+
+    def fit(self, layout: Layout) -> None:
+        """Take the same view of another vehicle, unless it is about as long as the former."""
+        if self._view is not None and not 1 / OTHER_SIZE < layout.length / self._view[1].length < OTHER_SIZE:
+            self.look(self._view[0], layout)
 
     async def _refit(self, camera: Lens) -> None:
         """Stand anew when the picture's shape has changed, unless the user has moved."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import math
 from collections.abc import Sequence
 
 from app.load_unit import heading
@@ -52,22 +53,27 @@ def _whole_label(row: Row) -> str:
 
 def cells(row: Row | None, compared: bool) -> list[str]:
     """Now, baseline and change."""
-    value, baseline, change = (None, None, None) if row is None else (row.now, row.baseline, row.change)
-    now = f"<td>{figure_text(value)}</td>"
+    now, baseline, change = (NONE, NONE, None) if row is None else (*row_texts(row), row.change)
     if not compared:
-        return [now]
+        return [f"<td>{now}</td>"]
     sign = "" if change is None or abs(change) < NOTABLE else "more" if change > 0 else "less"
-    return [now, f"<td>{figure_text(baseline)}</td>", f'<td class="{sign}">{change_text(change)}</td>']
+    return [f"<td>{now}</td>", f"<td>{baseline}</td>", f'<td class="{sign}">{change_text(change)}</td>']
 
 
-def figure_text(value: float | None) -> str:
-    """Three digits that count, as people write them: 0.0912, 1.35, 18.7, 183."""
+def row_texts(row: Row) -> tuple[str, str]:
+    """Now and baseline."""
+    return figure_text(row.now, row.resolution), figure_text(row.baseline, row.resolution)
+
+
+def figure_text(value: float | None, resolution: float = 0.0) -> str:
+    """Three digits that count, as people write them: 0.0912, 1.35, 18.7, 183; none finer than the resolution."""
     if value is None:
         return NONE
     if value == 0:
         return "0"
     digits = max(2 - int(f"{abs(value):e}".partition("e")[2]), 0)
-    return f"{value:.{min(digits, 4)}f}"
+    finest = 4 if resolution == 0 else max(math.ceil(-math.log10(resolution)), 0)
+    return f"{value:.{min(digits, finest, 4)}f}"
 
 
 def change_text(change: float | None) -> str:

@@ -20,6 +20,7 @@ from model.validation import Fault
 PRECISION = 4  # decimals that a box takes and shows
 FINEST_STEP = 10**-PRECISION  # parameters that need finer ones are typed as text: 1e-6
 ONE_EACH = " Here one for each road wheel, front first."
+UNBROKEN = str.maketrans({" ": "\u00a0", "/": "/\u2060"})  # a label may go on in a second line, its unit may not
 IMAGINARY = "vehicle.imaginary_"
 IMAGINARY_SWITCH = "vehicle.imaginary_wheels.enabled"
 
@@ -50,23 +51,30 @@ class Wishes(Protocol):
 
 
 def shown_label(parameter: Parameter) -> str:
-    """Name and unit: "Road stiffness, kN/m"."""
-    return f"{parameter.label}, {parameter.shown_unit}" if parameter.shown_unit else parameter.label
+    """Name and unit: "Road stiffness, kN/m", the unit in one piece."""
+    unit = parameter.shown_unit.translate(UNBROKEN)
+    return f"{parameter.label}, {unit}" if unit else parameter.label
 
 
 def hint(parameter: Parameter) -> str:
     """What it is, what happens when it grows, and where it stands in the paper."""
-    parts = [parameter.description]
+    parts = [_in_words(parameter)]
     if parameter.growth:
         parts.append(f"When it grows: {parameter.growth[0].lower()}{parameter.growth[1:]}")
-    if _typed(parameter) and parameter.optional:
-        parts.append("Leave empty for the value computed from the others.")
     if parameter.per_wheel:
         parts.append("One value for all road wheels.")
     facts = [f"Symbol {parameter.symbol}"] if parameter.symbol else []
     facts += [f"unit {parameter.shown_unit}"] if parameter.shown_unit else []
     facts += [f"from {parameter.source}"] if parameter.source.startswith(("Table", "section")) else []
     return " ".join(parts) + (f" ({', '.join(facts)})" if facts else "")
+
+
+def _in_words(parameter: Parameter) -> str:
+    """The description as it reads beside a box: what is left out of a file is an empty box, choices are words."""
+    text = parameter.description.replace("Left out:", "Empty:").replace("left out:", "empty:")
+    for choice in parameter.choices:
+        text = text.replace(choice, choice_words(choice))
+    return text
 
 
 def allowed(parameter: Parameter) -> str:

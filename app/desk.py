@@ -59,6 +59,8 @@ class Desk:
         self._compared_at = 0.0  # when it was made, s
         self._news_at: float | None = None  # when something came up that the browser is to store, s; None: nothing
         self._stored = ""
+        self._dark: bool | None = None  # the look that the user has chosen
+        self._prefers_dark = False
         self._restored = False  # the browser has said what it has, and may be told anew
 
     @property
@@ -92,8 +94,20 @@ class Desk:
 
     def set_dark(self, dark: bool) -> None:
         """Change the look of the page."""
-        self._window.set_dark(dark)
+        self._dark = dark
+        self._look()
         self._news_at = 0.0
+
+    def prefer_dark(self, dark: bool) -> None:
+        """Say how the browser is set: the look of the page until the user chooses another."""
+        self._prefers_dark = dark
+        if self._restored:
+            self._look()
+
+    def _look(self) -> None:
+        dark = self._prefers_dark if self._dark is None else self._dark
+        if dark != self._window.dark:
+            self._window.set_dark(dark)
 
     def tick(self, now: float) -> None:
         """Do what waits for a moment of rest; `now`, s."""
@@ -306,10 +320,11 @@ class Desk:
         something else, or the user is at work already.
         """
         self._restored = True
+        if state is not None and self._dark is None:
+            self._dark = state.dark
+        self._look()
         if state is None:
             return
-        if state.dark:
-            self._window.set_dark(True)
         for preset in state.presets:
             if preset not in self._presets.values():
                 self._offer(preset)
@@ -329,9 +344,7 @@ class Desk:
     def _remember(self) -> None:
         self._news_at = None
         own = [self._presets[name] for name in self._own]
-        stored = state_text(
-            self._started_with, self._changes.present, own, self._runs, self._baseline, self._window.dark
-        )
+        stored = state_text(self._started_with, self._changes.present, own, self._runs, self._baseline, self._dark)
         if stored != self._stored:
             self._stored = stored
             self._helper.remember(stored)

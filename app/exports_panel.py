@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 import viser
@@ -22,6 +23,7 @@ DATA = {"CSV": "run.csv", "NPZ": "run.npz", "YAML": "yaml"}
 MOVING = {"Replay": "replay", "Movie": "movie"}
 CANCEL = "Cancel"
 SAVE, EDIT = "Save preset", "Edit YAML"
+STYLE = f"<style>{(Path(__file__).parents[1] / 'assets' / 'modal.css').read_text()}</style>"  # in each window's HTML
 
 
 class Exporter(Protocol):
@@ -83,8 +85,16 @@ class ExportsPanel:
                 hint="The present parameters. Save preset: into the list of presets, under the name above; this "
                 "browser remembers it. Edit YAML: all of them as text, to copy, change or paste.",
             )
-            config = gui.add_upload_button("Open a configuration", mime_type=".yaml,.yml", hint="A YAML file")
-            run = gui.add_upload_button("Open a run as baseline", mime_type=".npz", hint="An NPZ file")
+            config = gui.add_upload_button(
+                "Open a configuration",
+                mime_type=".yaml,.yml",
+                hint="A YAML file, such as Data saves: all parameters follow",
+            )
+            run = gui.add_upload_button(
+                "Open a run as baseline",
+                mime_type=".npz",
+                hint="An NPZ file, such as Data saves: it is compared with what is shown",
+            )
         picture.on_click(by_user(lambda event: exporter.export(PICTURE), fail))
         for group, files in ((figure, FIGURES), (data, DATA), (moving, MOVING)):
             group.on_click(by_user(_exporting(exporter, files), fail))
@@ -107,7 +117,7 @@ class ExportsPanel:
     def edit_yaml(self, config: Config) -> None:
         """Open the configuration as text in a window of its own."""
         with self._gui.add_modal("Configuration") as modal:
-            self._gui.add_html('<div class="trackride-yaml"></div>')
+            self._gui.add_html(f'<div class="trackride-yaml"></div>{STYLE}')
             text: Any = self._gui.add_text("YAML", dump_config(config), multiline=True)
             faults = self._gui.add_html("")
             use = self._gui.add_button("Use this", hint="Run it; Undo leads back")
@@ -128,7 +138,7 @@ class ExportsPanel:
     def show_faults(self, title: str, error: ConfigError) -> None:
         """Say all that is wrong with a configuration, in a window of its own."""
         with self._gui.add_modal(title) as modal:
-            self._gui.add_html(fault_list(error))
+            self._gui.add_html(fault_list(error) + STYLE)
             close = self._gui.add_button("Close")
         close.on_click(by_user(lambda event: modal.close(), self._exporter.fail))
 

@@ -83,7 +83,9 @@ def _head(page: Page, trajectory: Trajectory, baseline: Trajectory | None, title
     page.write(right, y - 0.06, datetime.now().strftime("%Y-%m-%d %H:%M"), 8, color=GREY, ha="right")
     words = plain(trajectory.config.name, 50)
     if baseline is not None:
-        words = f"This run: {words}, solid lines.   Baseline: {plain(baseline.config.name, 50)}, pale dashed lines."
+        other = plain(baseline.config.name, 50)
+        which = "" if other == words else f", {other}"
+        words = f"{words}.   Solid lines: this run; pale dashed lines: the baseline{which}."
     page.write(MARGIN, y - 0.22, words, 8.5, color=GREY)
     page.rule(MARGIN, y - 0.32, WIDTH - 2 * MARGIN, INK, 0.01)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from app.comparison import change_text, figure_text
+from app.comparison import change_text, row_texts
 from app.figure_page import BAND, GREY, MARKED, Page, plain
 from app.load_unit import heading
 from app.parameter_text import value_text
@@ -158,7 +158,7 @@ def telling(names: list[str], rows: dict[tuple[str, str], Row]) -> list[str]:
 def _texts(row: Row) -> tuple[str, str, str]:
     """Now, baseline and change."""
     change = change_text(row.change) if row.change is None or row.change < MOST else f">{MOST:g} %"
-    return figure_text(row.now), figure_text(row.baseline), change
+    return *row_texts(row), change
 
 
 def _named(parameter: Parameter) -> str:

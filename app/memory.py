@@ -27,11 +27,11 @@ class State:
     presets: tuple[Config, ...]  # the user's own, oldest first
     runs: tuple[Kept, ...]  # without their trajectories, oldest first
     baseline: Kept | None
-    dark: bool  # its look
+    dark: bool | None  # the look that was chosen; None: the browser's own
 
 
 def state_text(
-    start: Config, wish: Wish, presets: Iterable[Config], runs: Iterable[Kept], baseline: Kept | None, dark: bool
+    start: Config, wish: Wish, presets: Iterable[Config], runs: Iterable[Kept], baseline: Kept | None, dark: bool | None
 ) -> str:
     """All of it as JSON; of runs only how to make them again."""
     return json.dumps(
@@ -63,7 +63,7 @@ def state_from(text: str) -> State:
         presets=_all_usable(_config, state.get("presets"), PRESETS),
         runs=_all_usable(_run, state.get("runs"), RUNS),
         baseline=_usable(_run, state.get("baseline")),
-        dark=state.get("dark") is True,
+        dark=state.get("dark") if isinstance(state.get("dark"), bool) else None,
     )
 
 

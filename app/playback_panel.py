@@ -11,6 +11,7 @@ from app.driving import DriveState
 from app.playback import NORMAL_SPEED, SPEEDS, STEP, Playback
 
 HEIGHT = 172  # px
+ONE_ROW, ROW = 390, 27  # px: on a panel less wide the buttons take a second row, of this height
 GAP = 14  # px to the lower edge of the view
 START, BACK, PLAY, PAUSE, ON = "|◀", "◀ Step", "▶ Play", "❚❚ Pause", "Step ▶"
 ANEW, GO = "|◀ Restart", "▶ Drive on"
@@ -48,9 +49,8 @@ class PlaybackPanel:
             self._mode: Any = gui.add_button_group(
                 "Mode",
                 _modes(False),
-                hint="Run: a stretch of road, computed anew at each change. Drive: on and on in real time; changes act "
-                "on the moving vehicle; an obstacle comes again and again, and is put ahead of the vehicle when it is "
-                "changed (key D).",
+                hint="Run: a fixed stretch of road, computed anew at each change. Drive (D): on and on in real time; "
+                "changes act on the moving vehicle, and an obstacle comes again and again.",
             )
             self._time: Any = gui.add_slider(
                 "Time, s", 0.0, 1.0, STEP, 0.0, hint="Where in the run, or in the last seconds of the drive, we are"
@@ -90,7 +90,8 @@ class PlaybackPanel:
 
     def place(self, x: int, width: int) -> None:
         """Float at the foot of the view, px from its left edge."""
-        self._panel.float(x=x, y=-GAP, width=width, height=HEIGHT)
+        height = HEIGHT if width >= ONE_ROW else HEIGHT + ROW
+        self._panel.float(x=x, y=-GAP, width=width, height=height)
 
     def show(self, playback: Playback) -> None:
         """Say what the playback of a run does."""

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from matplotlib.figure import Figure
 
 from app.comfort_page import FIGURES, PLACES
-from app.comparison import NONE, figure_text
+from app.comparison import NONE, figure_text, row_texts
 from app.export import file_name
 from app.load_unit import comparison_rows, heading
 from app.markup import formula_html, words_html
@@ -141,7 +141,7 @@ def _warnings(run: Trajectory) -> Html:
 
 def _wheels(run: Trajectory) -> Html:
     told = comparison_rows(run, None)
-    rows = {(row.wheel, row.figure): figure_text(row.now) for row in told if row.wheel}
+    rows = {(row.wheel, row.figure): row_texts(row)[0] for row in told if row.wheel}
     heads = ["Wheel", *(heading(figure.label, told) for figure in WHEEL_FIGURES)]
     wheels = dict.fromkeys(wheel for wheel, _ in rows)
     return table(

@@ -281,7 +281,7 @@ class Places:
 def build_scene(trajectory: Trajectory, like: Scene | None = None) -> Scene:
     """The scene of a run; takes over what it shares with another one, which makes it cheap."""
     system, config = trajectory.system, trajectory.config
-    layout = layout_of(system)
+    layout = layout_of(system, config.vehicle.hull)
     x = trajectory.q[:, system.chassis, 0]
     first, last = float(x.min()) - BEHIND - TILES, float(x.max()) + AHEAD + TILES
     if like is None or like.layout != layout:
@@ -299,13 +299,13 @@ def live_scene(recent: Trajectory, road: Road, like: Scene | None = None) -> Sce
     x = float(recent.q[-1, 0, 0])
     ground = GroundLine.of_laid(road, like.ground if like else None)
     if like is None:
-        layout = layout_of(recent.system)
+        layout = layout_of(recent.system, recent.config.vehicle.hull)
         return Scene(recent, recent.system, layout, Places(recent.system, layout), ground)
     fell_back = like.trajectory.q[-1, 0, 0] - x
     passed = like.passed + REBASE * round(fell_back / REBASE)
     system, layout, places = like.system, like.layout, like.places
     if like.trajectory.config is not recent.config:
-        system, layout = recent.system, layout_of(recent.system)
+        system, layout = recent.system, layout_of(recent.system, recent.config.vehicle.hull)
     if layout != like.layout:
         return Scene(recent, system, layout, Places(system, layout), ground, passed)
     before = like.travel if recent.t[0] > like.trajectory.t[0] else None

@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 LEFT = 345  # px, width of the control panel
-RIGHT = 470  # px, width of the plots at least
+RIGHT = 470  # px, width of the plots at least…
+NARROW = 320  # … and where the page has no room for that beside the player
 WIDEST = 760  # px, width of the plots at most
 PLOTS_SHARE = 0.3  # of the page's width
 SEAMS = 8  # px that viser puts between docked panels and the view
-PLAYER = 560  # px, width of the player at most
+PLAYER, SHORT_PLAYER = 560, 300  # px, width of the player at most, and at least
+MARGINS = 24  # px beside it
 MODES = 485  # px beside the spectrum: three boxes and the table of a paper's vehicle's modes
 PLOTS_HEAD = 66  # px above the plots in their panel
 AXIS_NAME = 16  # px that the name of the axis takes below the last plot
@@ -66,12 +68,13 @@ class Screen:
         """Sizes with the plots as wide as suits the page; of the view now, screen pixels."""
         assert self._scale is not None
         view, before = width / self._scale, self._right
-        self._right = int(min(max(RIGHT, PLOTS_SHARE * (LEFT + view + before + SEAMS)), WIDEST))
+        wished = min(max(RIGHT, PLOTS_SHARE * (LEFT + view + before + SEAMS)), WIDEST)
+        self._right = int(max(min(wished, view + before - SHORT_PLAYER - MARGINS), NARROW))
         return _layout(view + before - self._right, height / self._scale, self._right)
 
 
 def _layout(view_width: float, page_height: float, right: int) -> Layout:
-    player = int(min(max(view_width - 24, 300), PLAYER))
+    player = int(min(max(view_width - MARGINS, SHORT_PLAYER), PLAYER))
     return Layout(right, max(int((view_width - player) / 2), 0), player, int(page_height))
 
 

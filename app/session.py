@@ -50,7 +50,6 @@ class Session:
         preset: str,
         config: Config,
         *,
-        dark: bool = False,
         run: Simulate = simulate,
         make_scene: Callable[[viser.ClientHandle, bool], Scene] = Stage,
     ) -> None:
@@ -71,7 +70,7 @@ class Session:
         self._closed = threading.Event()
         self._runner = Runner(first_wish(presets[preset], config), run, self._wake.set, self.fail)
         try:
-            self._window = Window(client, presets, preset, config, self, make_scene, dark)
+            self._window = Window(client, presets, preset, config, self, make_scene)
         except Exception:
             self._runner.close()
             raise
@@ -193,6 +192,10 @@ class Session:
 
     def set_dark(self, dark: bool) -> None:
         self.ask("dark", lambda desk: desk.set_dark(dark))
+
+    def prefer_dark(self, dark: bool) -> None:
+        """The look that the browser is set to."""
+        self.ask("preference", lambda desk: desk.prefer_dark(dark))
 
     def export(self, what: str) -> None:
         """Wish for a download: a key of the porter's."""

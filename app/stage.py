@@ -266,6 +266,8 @@ class Stage:
                 self._build(scene)
         if before is None:
             self.set_view("side")
+        else:
+            self._camera.fit(scene.layout)
 
     def _build(self, scene: Scene) -> None:
         """Make vehicle and road anew."""

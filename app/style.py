@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import json
+from typing import NamedTuple
 
 import viser
 
@@ -12,9 +13,11 @@ BRAND = (28, 108, 178)
 # Only wishes: without them everything works and can be read. The picture that cannot be loaded runs its line once:
 # viser turns and moves the camera with some of our keys, wherever they are pressed, a slider included; it shows hints
 # over boxes only: here also over their labels, and those of plain buttons, which come in `add_hints`.
-# IN_VIEW stands for the hidden checkbox that a page in the background takes its tick from. No :has() in the rules:
-# with it the browser takes eight times as long over each change of the page, and many come in a second.
-# Small text is read at 4.5:1 at least (WCAG 2.2, 1.4.3), which the greys and blues that viser would take do not reach.
+# IN_VIEW and NIGHT stand for hidden checkboxes: a page in the background takes the tick from one, and a browser that is
+# set to dark pages gives the other one its tick. No :has() in the rules: with it the browser takes eight times as long
+# over each change of the page, and many come in a second. On a phone viser puts all panels into one sheet, which would
+# hide the vehicle. Small text is read at 4.5:1 at least (WCAG 2.2, 1.4.3), which the greys and blues that viser would
+# take do not reach.
 PAGE = """<img hidden src="data:," onerror="
   this.parentElement.dataset.trackride = 'page';
   this.parentElement.parentElement.dataset.trackride = 'panel';
@@ -37,12 +40,17 @@ PAGE = """<img hidden src="data:," onerror="
         hinted?.dispatchEvent(new MouseEvent(into, {clientX, clientY}));
       });
     }
-    document.addEventListener('visibilitychange', () => {
-      const box = document.getElementById(document.getElementById('trackride-style')?.dataset.inView);
-      if (box && box.checked === document.hidden) box.click();
-    });
+    const tick = (name, on) => {
+      const box = document.getElementById(document.getElementById('trackride-style')?.dataset[name]);
+      if (box && box.checked !== on) box.click();
+    };
+    document.addEventListener('visibilitychange', () => tick('inView', !document.hidden));
+    const night = matchMedia('(prefers-color-scheme: dark)');
+    const wish = () => tick('night', night.matches);
+    night.addEventListener('change', wish);
+    setTimeout(wish);
   }"><p class="trackride-intro">Move a slider: the run is computed anew. Ctrl+K: all keys.</p>
-<style id="trackride-style" data-in-view="IN_VIEW">
+<style id="trackride-style" data-in-view="IN_VIEW" data-night="NIGHT">
   :root[data-mantine-color-scheme="light"] { --mantine-color-dimmed: #5c6670; --trackride-good: #087f5b;
     --trackride-bad: #c92a2a; --trackride-more: #b83a0a; --trackride-less: #1864ab;
     --mantine-color-custom-filled: var(--mantine-color-custom-8); --mantine-color-custom-outline:
@@ -52,13 +60,18 @@ PAGE = """<img hidden src="data:," onerror="
   :root[data-mantine-color-scheme="dark"] [role="tab"] {
     --mantine-primary-color-filled: var(--mantine-primary-color-4); }
   .mantine-Slider-markLabel, .mantine-Notification-description { color: var(--mantine-color-dimmed); }
-  [data-trackride="page"] + div, [data-trackride="page"] + div + div { display: none; }
+  [data-trackride="page"] + div, [data-trackride="page"] + div + div,
+  [data-trackride="page"] + div + div + div { display: none; }
   [data-trackride="panel"] { padding-right: 4px; }
   [data-trackride="panel"] div[style*="flex-shrink: 0"] { width: 9.6em !important; }
   [data-trackride="panel"] .mantine-Paper-root div[style*="flex-shrink: 0"] { width: 8.96em !important; }
   [data-trackride="panel"] div[style*="flex-shrink: 0"] > p { letter-spacing: -0.3px !important;
     font-size: 0.8em !important; }
   [data-trackride="panel"] > .mantine-Paper-root { margin-bottom: 1.15em !important; }
+  @media (max-width: 36em) {
+    .mantine-Paper-root[style*="max-height: 60%"] { width: 100% !important; max-height: 45% !important; }
+    .mantine-Paper-root[style*="max-height: 60%"] div[style="width: 20em;"] { width: 100% !important; }
+  }
   .trackride-intro { margin: -0.35em 0 0.6em; padding: 0 0.95em; font-size: 0.78em;
     color: var(--mantine-color-dimmed); }
   .trackride-status { font-size: 0.8em; line-height: 1.5; padding: 0 0.8em 0.5em; white-space: nowrap;
@@ -73,17 +86,22 @@ def apply_theme(gui: viser.GuiApi, dark: bool) -> None:
     gui.configure_theme(dark_mode=dark, brand_color=BRAND, show_logo=False, show_share_button=False)
 
 
-def add_page(gui: viser.GuiApi) -> tuple[viser.GuiCheckboxHandle, viser.GuiTextHandle]:
-    """Add rules and keys, and two controls that nobody sees but the page sets.
+class PageSigns(NamedTuple):
+    """Controls that nobody sees but the page sets."""
 
-    The checkbox is ticked while the page is in view. The text names the tabs in front, with commas between;
-    assets/plots.js writes it as soon as the page shows the panels.
-    """
+    in_view: viser.GuiCheckboxHandle  # ticked while the page is in view
+    in_front: viser.GuiTextHandle  # names of the tabs in front, with commas between, once the page shows the panels
+    night: viser.GuiCheckboxHandle  # ticked where the browser is set to dark pages
+
+
+def add_page(gui: viser.GuiApi) -> PageSigns:
+    """Add rules and keys, and what the page tells by; assets/plots.js writes which tabs are in front."""
     page = gui.add_html("")
     in_view = gui.add_checkbox("In view", True)
     in_front = gui.add_text("Tabs in front", "")
-    page.content = PAGE.replace("IN_VIEW", in_view._impl.uuid)
-    return in_view, in_front
+    night = gui.add_checkbox("Dark pages", False)
+    page.content = PAGE.replace("IN_VIEW", in_view._impl.uuid).replace("NIGHT", night._impl.uuid)
+    return PageSigns(in_view, in_front, night)
 
 
 def add_hints(gui: viser.GuiApi) -> None:

@@ -90,7 +90,9 @@ class ViewPanel:
                 initial_value=1.0,
                 hint="Of all force arrows; at 1 an even share of the weight is as high as a road wheel, at 2 as two",
             )
-            self._night: Any = gui.add_checkbox("Dark", dark, hint="Dark colours for page, plots and view")
+            self._night: Any = gui.add_checkbox(
+                "Dark", dark, hint="Dark colours for page, plots and view; at first as the browser is set"
+            )
             self._load_scale = gui.add_html("", visible=False)
         views.on_click(by_user(lambda event: viewer.set_view(VIEWS[event.target.value]), viewer.fail))
         for attribute, box in self._switches.items():

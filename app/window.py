@@ -79,6 +79,8 @@ class Actions(Wishes, Player, Viewer, Picker, Keeping, Exporter, Analyst, Keys, 
 
     def set_in_front(self, tabs: frozenset[str]) -> None: ...
 
+    def prefer_dark(self, dark: bool) -> None: ...
+
 
 class Window:
     """Panels, plots and 3-D view of one tab."""
@@ -91,9 +93,9 @@ class Window:
         config: Config,
         actions: Actions,
         make_scene: Callable[[viser.ClientHandle, bool], Scene],
-        dark: bool,
     ) -> None:
-        self._client, self._dark, self._actions = client, dark, actions
+        self._client, self._actions = client, actions
+        self._dark = dark = False
         self._run: Trajectory | None = None
         self._baseline: Trajectory | None = None
         self._drive: DriveState | None = None  # the last of the drive that is shown
@@ -114,11 +116,12 @@ class Window:
             gui.set_panel_label("Trackride")
             gui.main_panel.dock_left()
             gui.main_panel.set_width(LEFT)
-            in_view, in_front = add_page(gui)
-            in_view.on_update(by_user(lambda event: actions.set_in_view(event.target.value), actions.fail))
-            in_front.on_update(
+            signs = add_page(gui)
+            signs.in_view.on_update(by_user(lambda event: actions.set_in_view(event.target.value), actions.fail))
+            signs.in_front.on_update(
                 by_user(lambda event: actions.set_in_front(frozenset(event.target.value.split(","))), actions.fail)
             )
+            signs.night.on_update(by_user(lambda event: actions.prefer_dark(event.target.value), actions.fail))
             self._controls = ControlPanel(gui, presets, preset, config, actions)
             with self._controls.middle:
                 self._folders = [gui.add_folder(name, expand_by_default=False) for name in FOLDERS]

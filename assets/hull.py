@@ -1,4 +1,4 @@
-"""The hull: an armoured carrier of the BMP class, or a robot's plain body, stretched to the wheels it stands on.
+"""The hull: of a fighting vehicle with a turret, of a carrier, or a robot's, stretched to the wheels it stands on.
 
 In the design pose: x forward, y to the left, z above flat ground; m, at the size of the paper's vehicle.
 """
@@ -6,6 +6,7 @@ In the design pose: x forward, y to the left, z above flat ground; m, at the siz
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,9 +21,6 @@ FLOOR: Rgba = (66, 74, 60, 255)
 GLASS: Rgba = (46, 60, 72, 255)
 LAMP: Rgba = (250, 240, 204, 255)
 TAIL_LAMP: Rgba = (176, 54, 44, 255)
-ROOF, ROOF_HALF_WIDTH = 1.56, 1.20
-LOW_ROOF = 1.26  # of a light vehicle
-GLACIS, SHORT_GLACIS = 1.30, 0.40  # m from the nose's tip back to the roof
 TURRET = (0.82, 0.04), (0.50, 0.385)  # radius and height over the roof, of the cone's foot and top
 TURRET_CORNERS = 32  # of its circles among the edges
 GUN = 0.84, 2.52  # m before the turret's axis, from the mantlet to the muzzle
@@ -31,11 +29,33 @@ GUN_HEIGHT, GUN_RISE = 0.20, 0.03  # m over the roof, and m upwards for each m f
 Point = tuple[float, float, float]
 
 
+class Shape(NamedTuple):
+    """What tells hulls apart; m."""
+
+    tip: float  # of the nose, ahead of the sprocket
+    front: float  # edge of the roof, behind the sprocket
+    roof: float  # height
+    half_width: float  # of the roof
+
+
+SHAPES = {
+    "turret": Shape(0.46, 1.30, 1.56, 1.20),
+    "carrier": Shape(0.30, 0.36, 1.80, 1.43),
+    "plain": Shape(0.46, 0.40, 1.26, 1.20),
+}
+
+
 def hull(layout: Layout) -> list[Part]:
     """Everything that is fixed to the chassis, about the point of the ground under its centre of mass."""
     unit = layout.at_scale_one()
     parts = [*_body(unit), *_fenders(unit), *_lamps(unit), *_rollers(unit)]
-    parts += _lid(unit) if layout.light else [*_turret(unit), *_fittings(unit)]
+    match layout.hull:
+        case "turret":
+            parts += [*_turret(unit), *_fittings(unit)]
+        case "carrier":
+            parts += _carrier_fittings(unit)
+        case _:
+            parts += _lid(unit)
     return [part.scaled(layout.scale) for part in parts]
 
 
@@ -51,7 +71,7 @@ def hull_edges(layout: Layout) -> list[np.ndarray]:
     side = np.array([*upper, upper[0], chin])
     across = [np.array([corner, corner]) for corner in (*upper, chin)]
     lines = [side, side * (1, -1, 1), *(bar * np.array([(1, 1, 1), (1, -1, 1)]) for bar in across)]
-    if not layout.light:
+    if layout.hull == "turret":
         lines += _turret_edges(unit)
     return [layout.scale * line for line in lines]
 
@@ -69,26 +89,25 @@ def _turret_edges(layout: Layout) -> list[np.ndarray]:
 def _nose(layout: Layout) -> tuple[Point, Point]:
     """Its tip and, below, its chin."""
     nose, w = layout.sprocket.x, layout.hull_half_width
-    return (nose + 0.46, w, layout.fender + 0.04), (nose + 0.02, w, layout.belly + 0.16)
+    return (nose + SHAPES[layout.hull].tip, w, layout.fender + 0.04), (nose + 0.02, w, layout.belly + 0.16)
 
 
 def _upper(layout: Layout) -> list[Point]:
     """Corners of the body above the fenders, from the tip up and back."""
     nose, tail, deck = layout.sprocket.x, layout.idler.x, layout.fender + 0.02
-    wide, narrow = layout.half_width - 0.08, ROOF_HALF_WIDTH
-    roof, glacis = (LOW_ROOF, SHORT_GLACIS) if layout.light else (ROOF, GLACIS)
+    wide, shape = layout.half_width - 0.08, SHAPES[layout.hull]
     return [
         _nose(layout)[0],
         (nose + 0.30, wide, deck),
         (nose + 0.24, wide - 0.05, deck + 0.10),
-        (nose - glacis, narrow, roof),
-        (tail - 0.24, narrow, roof),
+        (nose - shape.front, shape.half_width, shape.roof),
+        (tail - 0.24, shape.half_width, shape.roof),
         (tail - 0.36, wide, deck),
     ]
 
 
 def _turret_foot(layout: Layout) -> np.ndarray:
-    return np.array([layout.middle - 0.18, 0.0, ROOF - 0.005])
+    return np.array([layout.middle - 0.18, 0.0, SHAPES[layout.hull].roof - 0.005])
 
 
 def _body(layout: Layout) -> list[Part]:
@@ -161,51 +180,85 @@ def _lamps(layout: Layout) -> list[Part]:
 
 
 def _lid(layout: Layout) -> list[Part]:
-    """What closes a light vehicle's body: a plate on its roof."""
-    front, rear = layout.sprocket.x - SHORT_GLACIS - 0.15, layout.idler.x - 0.10
-    return [box(((front + rear) / 2, 0.0, LOW_ROOF + 0.01), (front - rear, 1.7, 0.05), PAINT_LIGHT)]
+    """What closes a plain body: a plate on its roof."""
+    shape = SHAPES[layout.hull]
+    front, rear = layout.sprocket.x - shape.front - 0.15, layout.idler.x - 0.10
+    return [box(((front + rear) / 2, 0.0, shape.roof + 0.01), (front - rear, 1.7, 0.05), PAINT_LIGHT)]
+
+
+class _Plates:
+    """The sloping plates of the body above the fenders, for what lies on them."""
+
+    def __init__(self, layout: Layout) -> None:
+        _, (_, wide, deck), (x, _, z), (front, narrow, roof), *_ = _upper(layout)
+        self._foot, self._top = np.array([x, z]), np.array([front, roof])
+        self._slope = float(np.arctan2(*(self._top - self._foot)[::-1])) - np.pi
+        self._fender, self._rise = np.array([wide, deck]), np.array([narrow - wide, roof - deck])
+        self._lean = float(np.arctan2(*self._rise[::-1])) - np.pi
+
+    def on_glacis(self, along: float, y: float, size: Point, colour: Rgba) -> Part:
+        """A block, `along` of the way from the glacis's foot to the roof."""
+        x, z = self._foot + along * (self._top - self._foot)
+        return box((0.0, 0.0, 0.0), size, colour).pitched(self._slope).moved(x, y, z)
+
+    def on_side(self, x: float, up: float, size: Point, colour: Rgba) -> Part:
+        """A block on the left, `up` of the way from the fender to the roof."""
+        y, z = self._fender + up * self._rise
+        return box((0.0, 0.0, 0.0), size, colour).rolled(self._lean).moved(x, y, z)
 
 
 def _fittings(layout: Layout) -> list[Part]:
-    """Hatches, doors, vision blocks, splash boards, stowage, exhaust and tow hooks."""
+    """Hatches, doors, vision blocks, splash boards, stowage, exhaust and tow hooks about a turret."""
     nose, tail, middle, deck = layout.sprocket.x, layout.idler.x, layout.middle, layout.fender + 0.02
-    foot, top = np.array([nose + 0.24, deck + 0.10]), np.array([nose - GLACIS, ROOF])
-    slope = float(np.arctan2(*(top - foot)[::-1])) - np.pi
-
-    def on_glacis(along: float, y: float, size: Point, colour: Rgba) -> Part:
-        """A block lying on the glacis, `along` of the way from its foot to the roof."""
-        x, z = foot + along * (top - foot)
-        return box((0.0, 0.0, 0.0), size, colour).pitched(slope).moved(x, y, z)
-
-    rise = np.array([ROOF_HALF_WIDTH - layout.half_width + 0.08, ROOF - deck])
-    lean = float(np.arctan2(*rise[::-1]))
-
-    def on_side(x: float, up: float, size: Point, colour: Rgba) -> Part:
-        """A block lying on the left side, `up` of the way from the fender to the roof."""
-        y, z = np.array([layout.half_width - 0.08, deck]) + up * rise
-        return box((0.0, 0.0, 0.0), size, colour).rolled(lean - np.pi).moved(x, y, z)
-
-    def on_roof(x: float, y: float) -> Part:
-        return box((x, y, ROOF + 0.012), (0.52, 0.52, 0.04), PAINT_LIGHT)
-
+    plates, roof = _Plates(layout), SHAPES[layout.hull].roof
+    blocks = [middle - 1.45 + 0.62 * k for k in range(4)]
     pairs = [
-        on_roof(tail + 0.25, 0.42),
+        box((tail + 0.25, 0.42, roof + 0.012), (0.52, 0.52, 0.04), PAINT_LIGHT),
         box((tail - 0.31, 0.34, deck + 0.26), (0.06, 0.62, 0.46), PAINT_LIGHT),
         box((middle - 0.90, 1.44, deck + 0.09), (0.9, 0.14, 0.18), PAINT_LIGHT),
         box((middle + 0.35, 1.44, deck + 0.07), (1.1, 0.10, 0.12), PAINT_DARK),
-        *(on_side(middle - 1.45 + 0.62 * k, 0.68, (0.15, 0.13, 0.05), PAINT_DARK) for k in range(4)),
-        *(on_side(middle - 1.45 + 0.62 * k, 0.68, (0.07, 0.05, 0.07), GLASS) for k in range(4)),
-        box((nose + 0.30, 0.55, layout.belly + 0.34), (0.16, 0.07, 0.10), DARK_STEEL),
+        *(plates.on_side(x, 0.68, (0.15, 0.13, 0.05), PAINT_DARK) for x in blocks),
+        *(plates.on_side(x, 0.68, (0.07, 0.05, 0.07), GLASS) for x in blocks),
+        _tow_hook(layout),
     ]
     return [
-        on_glacis(0.30, 0.0, (0.03, 2.0, 0.16), PAINT_DARK),
-        on_glacis(0.52, 0.0, (0.03, 2.0, 0.07), PAINT_DARK),
-        on_glacis(0.72, 0.55, (0.50, 0.56, 0.05), PAINT_LIGHT),
-        on_glacis(0.95, 0.55, (0.10, 0.44, 0.12), GLASS),
-        on_glacis(0.70, -0.55, (0.50, 0.70, 0.04), PAINT_LIGHT),
+        plates.on_glacis(0.30, 0.0, (0.03, 2.0, 0.16), PAINT_DARK),
+        plates.on_glacis(0.52, 0.0, (0.03, 2.0, 0.07), PAINT_DARK),
+        plates.on_glacis(0.72, 0.55, (0.50, 0.56, 0.05), PAINT_LIGHT),
+        plates.on_glacis(0.95, 0.55, (0.10, 0.44, 0.12), GLASS),
+        plates.on_glacis(0.70, -0.55, (0.50, 0.70, 0.04), PAINT_LIGHT),
         box((nose - 1.0, -1.34, deck + 0.30), (0.5, 0.06, 0.16), RUBBER),
         *both_sides(pairs),
     ]
+
+
+def _carrier_fittings(layout: Layout) -> list[Part]:
+    """Splash board, ramp, hatches of driver, commander and load, stowage, exhaust and tow hooks of a carrier."""
+    nose, tail, middle, deck = layout.sprocket.x, layout.idler.x, layout.middle, layout.fender + 0.02
+    plates, roof, front = _Plates(layout), SHAPES[layout.hull].roof, nose - SHAPES[layout.hull].front
+    hatch = upright(lathe([(0.26, 0.0), (0.26, 0.05), (0.20, 0.08), (0.0, 0.09)], PAINT_LIGHT, 20))
+    cupola = upright(lathe([(0.42, 0.0), (0.40, 0.14), (0.30, 0.20), (0.0, 0.22)], PAINT, 24))
+    blocks = [box((0.38 * x, 0.38 * y, 0.09), (0.12, 0.12, 0.07), GLASS) for x, y in ((1, 0), (0.6, 0.8), (-0.4, 0.9))]
+    pairs = [
+        *(part.moved(front - 1.35, 0.0, roof) for part in blocks),
+        plates.on_side(middle - 0.55, 0.55, (1.5, 0.34, 0.06), PAINT_LIGHT),
+        _tow_hook(layout),
+    ]
+    return [
+        plates.on_glacis(0.42, 0.0, (0.62, 2.2, 0.05), PAINT_LIGHT),
+        plates.on_glacis(0.42, 0.0, (0.06, 2.2, 0.09), PAINT_DARK),
+        hatch.moved(front - 0.34, 0.62, roof),
+        box((front - 0.02, 0.62, roof + 0.05), (0.06, 0.40, 0.07), GLASS),
+        box((front - 0.42, -0.55, roof + 0.012), (0.62, 0.80, 0.03), PAINT_DARK),
+        cupola.moved(front - 1.35, 0.0, roof),
+        box((tail - 0.31, 0.0, deck + 0.42), (0.10, 1.7, 0.66), PAINT_LIGHT),
+        box((tail + 0.66, 0.0, roof + 0.015), (1.15, 1.30, 0.05), PAINT_LIGHT),
+        *both_sides(pairs),
+    ]
+
+
+def _tow_hook(layout: Layout) -> Part:
+    return box((layout.sprocket.x + 0.30, 0.55, layout.belly + 0.34), (0.16, 0.07, 0.10), DARK_STEEL)
 
 
 def _rollers(layout: Layout) -> list[Part]:

@@ -14,7 +14,6 @@ import numpy as np
 from model.vehicle import System
 
 PAPER_RADIUS = 0.32  # m, of the wheels of the paper's vehicle
-LIGHT = 1000.0  # kg of one side's sprung mass, below which nobody would put a turret on a vehicle
 
 
 class Circle(NamedTuple):
@@ -31,7 +30,7 @@ class Layout:
     radius: float  # of road wheels and imaginary wheels, to the ground: the track's shoes included
     links: tuple[float, ...]  # lengths of the imaginary arms
     pivot: tuple[float, float]  # of a road arm, from its wheel's centre: forward, up
-    light: bool  # a robot: a plain body without turret
+    hull: str  # its shape, one of model.parameters.HULLS
 
     @property
     def scale(self) -> float:
@@ -46,7 +45,7 @@ class Layout:
             self.radius / s,
             tuple(length / s for length in self.links),
             (self.pivot[0] / s, self.pivot[1] / s),
-            self.light,
+            self.hull,
         )
 
     @property
@@ -56,6 +55,11 @@ class Layout:
     @property
     def rear(self) -> float:
         return self.wheel_x[-1]
+
+    @property
+    def length(self) -> float:
+        """From sprocket to idler."""
+        return self.sprocket.x - self.idler.x
 
     @property
     def middle(self) -> float:
@@ -142,8 +146,8 @@ class Layout:
         return 2.0 * self.scale
 
 
-def layout_of(system: System) -> Layout:
-    """The layout of a vehicle."""
+def layout_of(system: System, hull: str) -> Layout:
+    """The layout of a vehicle whose hull has this shape."""
     design = system.q_design
     wheels = design[system.road_wheels]
     half_arm = design[1, :2] - wheels[0, :2]
@@ -153,5 +157,5 @@ def layout_of(system: System) -> Layout:
         radius=system.r,
         links=tuple(links.tolist()),
         pivot=(2 * float(half_arm[0]), 2 * float(half_arm[1])),
-        light=bool(system.mass[system.chassis] < LIGHT),
+        hull=hull,
     )

@@ -53,8 +53,9 @@ if (!window.trackridePlots) {
     const shown = Math.abs(low - min) + Math.abs(high - max) <= 1e-6 * (last - first);  // viser makes some charts with 0…1
     if (!shown) chart.setScale('x', {min: low, max: high});
   };
+  const isRun = (curve) => curve.class === 'run';
   const kin = (chart) => {  // a baseline's curve is hidden with the run's
-    const runs = chart.series.filter((curve) => curve.class === 'run');
+    const runs = chart.series.filter(isRun);
     const gone = hidden[[chart.axes[1].label, ...runs.map((curve) => curve.label)]] ??= new Set();
     return [runs, gone];
   };
@@ -63,30 +64,71 @@ if (!window.trackridePlots) {
     if ((kind === 'run' || kind === 'baseline') && show !== wanted) chart.setSeries(k, {show: wanted});
   });
   // Without a graphics processor a line of 1 px is drawn many times faster than a wider one. Three of them, a quarter of
-  // a pixel apart, look like 1.5 px; pale ones would only become darker.
+  // a pixel apart, look like 1.5 px; pale ones would only become darker. Curves of many points, which go up and down all
+  // the time (rough ground), stay thin: they would cover each other.
   const AROUND = [[-0.3, 0], [0.15, -0.26], [0.15, 0.26]];
+  const CROWD = 450;  // points of a curve in view
+  const isClear = (chart, k) => isRun(chart.series[k]) && /^#\w{6}$/.test(chart.series[k].stroke(chart, k));
   const thicken = (chart, k) => {
     const curve = chart.series[k], draw = curve.paths;
-    if (curve.class !== 'run' || !/^#\w{6}$/.test(curve.stroke(chart, k))) return;
+    if (!isClear(chart, k)) return;
     curve.paths = (...all) => {
       const paths = draw(...all);
       if (!paths) return paths;
-      const stroke = new Path2D();
-      AROUND.forEach(([e, f]) => stroke.addPath(paths.stroke, {e, f}));
+      let {stroke} = paths;
+      if (all[3] - all[2] < CROWD) {
+        stroke = new Path2D();
+        AROUND.forEach(([e, f]) => stroke.addPath(paths.stroke, {e, f}));
+      }
+      curve.drawn = stroke;
       return {...paths, stroke};
     };
+  };
+  // The curve of a wheel that is picked, or whose name is pointed at, is drawn once more over the others.
+  const PALE = 0.2, picked = new WeakMap(), pointed = new WeakMap();  // chart -> number of its curve
+  const notePicked = (chart) => {
+    const clear = chart.series.flatMap((_, k) => isClear(chart, k) ? [k] : []);
+    if (clear.length === 1 && chart.series.filter(isRun).length > 1) picked.set(chart, clear[0]);
+  };
+  const drawInFront = (chart) => {
+    const k = pointed.get(chart) ?? picked.get(chart), curve = chart.series[k];
+    if (!curve?.show || !curve.drawn) return;
+    const {ctx, bbox: {left, top, width, height}} = chart;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(left, top, width, height);
+    ctx.clip();
+    ctx.setLineDash([]);
+    ctx.lineWidth = curve.width * devicePixelRatio;
+    ctx.translate(ctx.lineWidth % 2 / 2, ctx.lineWidth % 2 / 2);  // as uPlot does
+    ctx.strokeStyle = curve.stroke(chart, k);
+    ctx.stroke(curve.drawn);
+    ctx.restore();
+  };
+  const pointAt = (chart, k) => {  // let a curve stand out, with its baseline, among pale ones; undefined: none
+    pointed.set(chart, k);
+    const kept = chart.series[k]?.label;
+    chart.series.forEach((curve) => curve.alpha = k === undefined || curve.label === kept ? 1 : PALE);
+    chart.redraw(false, false);
   };
   const meet = (chart) => {
     met.add(chart);
     chart.root.classList.add(chart.cursor.sync.key);
     chart.root.querySelector('.u-title').title = 'Drag across the plot to zoom in, double-click to see all';
-    chart.root.querySelector('.u-legend').title = 'Click a name to hide its curve, with Ctrl to hide all others';
+    const legend = chart.root.querySelector('.u-legend');
+    legend.title = 'Point at a name to see its curve in front, click it to hide the curve, with Ctrl all others';
+    legend.querySelectorAll('.u-series').forEach((name, k) => {
+      if (!isRun(chart.series[k])) return;
+      name.addEventListener('mouseenter', () => pointAt(chart, k));
+      name.addEventListener('mouseleave', () => pointAt(chart));
+    });
     chart.series.forEach((_, k) => thicken(chart, k));
+    notePicked(chart);
     chart.series.forEach((curve) => curve.value = valueOf);
     hide(chart);
     chart.redraw();  // with lines as thick as they are to be, also where no other run comes
     (chart.hooks.setSeries ??= []).push((_, k, change) => {
-      if (k === null || change.show === undefined || chart.series[k].class !== 'run') return;
+      if (k === null || change.show === undefined || !isRun(chart.series[k])) return;
       const [runs, gone] = kin(chart);
       runs.forEach(({label, show}) => show ? gone.delete(label) : gone.add(label));
       queueMicrotask(() => hide(chart));
@@ -94,6 +136,7 @@ if (!window.trackridePlots) {
     (chart.hooks.draw ??= []).push(() => {
       const [first, last] = ends(chart), {min, max} = chart.scales.x, shared = groupOf(chart);
       const drawn = last > first && max > min && inView.has(chart);
+      drawInFront(chart);
       if (drawn) shared.zoom = [(min - first) / (last - first), (max - first) / (last - first)];
       point(chart);
       drawMaps();

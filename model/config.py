@@ -128,6 +128,7 @@ class Vehicle(Section):
     imaginary_wheels: ImaginaryWheels = ImaginaryWheels()
     imaginary_arms: ImaginaryArms = ImaginaryArms()
     imaginary_suspension: ImaginarySuspension = ImaginarySuspension()
+    hull: str = _field("vehicle.hull")
 
 
 class Contact(Section):

@@ -31,7 +31,7 @@ SPARE = 30.0  # m of it ahead that are left when there is more to be seen
 LAID = 4.0  # m ahead of the first wheel's reach for which the road is laid at once
 STRIDE = 0.05  # s driven at most until it is looked at whether there is road enough
 REBASE = 1000.0  # m: driven further than this, the origin moves along, so that no digits are lost
-CHANGEABLE = ("road_suspension", "imaginary_suspension", "seat")  # of the vehicle: what may change under way
+CHANGEABLE = ("hull", "road_suspension", "imaginary_suspension", "seat")  # of the vehicle: what may change under way
 GRACE = 1.0  # s: an advance may take as many steps as a run of its length and this may
 CAPACITY = 4000  # samples between two calls of advance
 

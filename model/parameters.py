@@ -112,6 +112,7 @@ INTEGRATORS = (
     "stretched-rk43", "dormand-prince", "rk4", "scipy-rk45", "scipy-dop853", "scipy-radau", "scipy-lsoda", "scipy-bdf",
 )  # fmt: skip
 ROADS = ("flat", "sine", "half_round", "trapezoid", "step", "random", "profile", "sum")
+HULLS = ("turret", "carrier", "plain")
 KILO_N_PER_M, KILO_N_S_PER_M, MILLIMETRES = ("kN/m", 1e-3), ("kN s/m", 1e-3), ("mm", 1e3)
 # Unit of a rate at the wheel -> unit and shown unit of the rate about the joint
 TORSIONAL: dict[str, tuple[str, tuple[str, float] | None]] = {
@@ -165,7 +166,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         growth="The wheels move forward under the hull: front wheels carry less, rear wheels more."),
     Parameter("vehicle.road_wheels.positions", "Wheel positions", "x_i", "m", None, -50, 50,
         group=VEHICLE, source=OURS, kind="list", optional=True,
-        description="Where each road wheel stands ahead of the centre of mass, instead of count, spacing and offset."),
+        description="Where each road wheel stands ahead of the centre of mass; left out: by count, spacing, offset."),
     Parameter("vehicle.road_wheels.radius", "Wheel radius", "r", "m", 0.32, 0.05, 2, 0.15, 0.6, 0.005,
         group=VEHICLE, source=PAPER_TABLE,
         description="Radius of road wheels and imaginary wheels.",
@@ -273,11 +274,15 @@ PARAMETERS: tuple[Parameter, ...] = (
         growth="Imaginary wheels carry more of the weight, road wheels less."),
     Parameter("vehicle.imaginary_suspension.preload_force", "Preload force", "T", "N", None, 0, 1e6, 0, 10000, 50,
         group=TRACK, source=OURS, shown=("kN", 1e-3), optional=True,
-        description="Preload of the imaginary spring as a force at the wheel, instead of the preload deflection.",
+        description="Preload of the imaginary spring as a force at the wheel; left out: by the preload deflection.",
         growth="Imaginary wheels carry more of the weight, road wheels less."),
     Parameter("vehicle.imaginary_suspension.reacts_on", "Reacts on", "", "", "road_arm",
         group=TRACK, source=OURS, kind="choice", choices=("road_arm", "chassis"),
         description="Which body the imaginary spring leans on: road_arm (the paper's model) or chassis."),
+    Parameter("vehicle.hull", "Hull shape", "", "", "turret",
+        group=VEHICLE, source=OURS, kind="choice", choices=HULLS,
+        description="Shape in which the hull is drawn; nothing is computed from it. turret: low, with a turret and a "
+        "gun; carrier: a box with a sloped front; plain: flat, as of a robot."),
 
     Parameter("contact.normal_stiffness", "Ground stiffness", "k_n", "N/m²", 6e7, 1e6, 1e10, 1e6, 2e8, 1e6,
         group=CONTACT, source=ASSUMED, shown=("MN/m²", 1e-6),
@@ -362,8 +367,8 @@ PARAMETERS: tuple[Parameter, ...] = (
         growth="The faces are less steep: loads peak lower."),
     Parameter("road.roughness_class", "Roughness class", "", "", "C",
         group=ROAD, source=OURS, roads=("random",), kind="choice", choices=tuple("ABCDEFGH"),
-        description="Class of ISO 8608, from A, a very good road, over C, a poor one, to E to H, ground without a "
-        "road; B, D, F, G lie between. Heights double from class to class."),
+        description="Class of ISO 8608: A is a very good road, B a good one, C an average one, D a poor one, E a very "
+        "poor one; F, G and H are ground without a road. Heights double from class to class."),
     Parameter("road.seed", "Seed", "", "", 1, 0, 999999, 0, 1000, 1,
         group=ROAD, source=OURS, roads=("random",), kind="integer",
         description="Number of the random road: the same number gives the same road anywhere.",

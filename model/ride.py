@@ -77,6 +77,7 @@ class Row:
     now: float | None
     baseline: float | None
     change: float | None  # %, of the baseline; None where it means nothing
+    resolution: float = 0.0  # in the unit: finer differences mean nothing
 
     @property
     def label(self) -> str:
@@ -180,8 +181,10 @@ def dynamic_load_coefficient(trajectory: Trajectory) -> np.ndarray:
 def comparison(now: Trajectory, baseline: Trajectory | None) -> list[Row]:
     """The ride figures of a run, and of another beside them: the hull's first, then each wheel's, front first.
 
-    A change of the time in the air is None when the runs last differently long.
+    A change of the time in the air is None when the runs last differently long; it is counted in samples.
     """
+    runs = [now] if baseline is None else [now, baseline]
+    sampling = max(1 / run.config.simulation.output_rate for run in runs)
     present = _figures(now)
     other = {} if baseline is None else _figures(baseline)
     same_length = baseline is not None and now.t[-1] == baseline.t[-1]
@@ -193,7 +196,8 @@ def comparison(now: Trajectory, baseline: Trajectory | None) -> list[Row]:
             change = 100 * (value / reference - 1)
         if figure is AIR_TIME and not same_length:
             change = None
-        rows.append(Row(figure.label, wheel, figure.unit, value, reference, change))
+        resolution = sampling if figure is AIR_TIME else 0.0
+        rows.append(Row(figure.label, wheel, figure.unit, value, reference, change, resolution))
     return rows
 
 

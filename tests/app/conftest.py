@@ -26,6 +26,11 @@ from model.vehicle import build_system
 PATIENCE = 10.0  # s that a test waits for something to happen
 
 
+def as_typed(label: str) -> str:
+    """A label without what keeps its unit on one line."""
+    return label.replace("\u00a0", " ").replace("\u2060", "")
+
+
 def wait_for(condition: Callable[[], Any], what: str = "it") -> Any:
     """The first true answer of the condition; one that looks for what is not there yet has none."""
     end = time.monotonic() + PATIENCE
@@ -196,7 +201,7 @@ class Tab:
                 (
                     uuid
                     for uuid, widget in tuple(self.widgets.items())
-                    if widget["props"].get("label") == label and widget["props"].get("visible", True)
+                    if as_typed(widget["props"].get("label") or "") == label and widget["props"].get("visible", True)
                 ),
                 None,
             ),

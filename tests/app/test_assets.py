@@ -10,12 +10,14 @@ import numpy as np
 import pytest
 import trimesh
 
+from app.scene import build_scene
 from assets import running_gear
 from assets.hull import hull, hull_edges
 from assets.layout import Layout, layout_of
 from assets.solids import box, convex, glb, joined, lathe, lengthwise, light, upright
 from assets.surroundings import TILES, RoadStrip, ground, shadow, shadow_faces, sky
-from model import load_config
+from model import load_config, simulate
+from model.parameters import HULLS
 from model.vehicle import build_system
 
 GREY = (128, 128, 128, 255)
@@ -23,7 +25,8 @@ SUSPENSION_TRAVEL = 0.10  # m at the size of the paper's vehicle that wheels may
 
 
 def layout(**changes: object) -> Layout:
-    return layout_of(build_system(load_config("paper").replace(changes)))
+    config = load_config("paper").replace(changes)
+    return layout_of(build_system(config), config.vehicle.hull)
 
 
 VEHICLES = {
@@ -33,7 +36,8 @@ VEHICLES = {
     "large wheels": {"vehicle.road_wheels.radius": 0.5, "vehicle.road_wheels.spacing": 1.1},
     "small wheels": {"vehicle.road_wheels.radius": 0.2, "vehicle.road_wheels.spacing": 0.5},
     "steep arms": {"vehicle.road_arms.angle_deg": 40},
-    "light": {"vehicle.chassis.mass": 900},
+    "carrier": {"vehicle.hull": "carrier"},
+    "plain": {"vehicle.hull": "plain"},
     "offset": {"vehicle.road_wheels.offset": 0.3},
     "uneven": {"vehicle.road_wheels.positions": [1.9, 1.0, 0.3, -0.5, -1.6]},
 }
@@ -54,15 +58,31 @@ def test_hull_spans_the_running_gear_and_keeps_clear_of_it(changes: dict[str, ob
     assert (vertices[np.abs(vertices[:, 1]) < inner, 2] > 0.2 * s).all()
 
 
-def test_a_light_vehicle_has_no_turret() -> None:
-    """Nor edges of one, which its ghost would show."""
-    heavy, light = layout(**{"vehicle.chassis.mass": 1000}), layout(**{"vehicle.chassis.mass": 999})
-    for part in (joined(hull(light))[0], np.vstack(hull_edges(light))):
-        assert part[:, 2].max() < 1.4
-        assert part[:, 0].max() < light.sprocket.x + 1.0  # no gun
-    for part in (joined(hull(heavy))[0], np.vstack(hull_edges(heavy))):
+@pytest.mark.parametrize(("hull_shape", "top"), [("carrier", (1.7, 2.1)), ("plain", (1.2, 1.4))])
+def test_only_a_hull_with_a_turret_has_a_gun(hull_shape: str, top: tuple[float, float]) -> None:
+    """Nor have the edges of another, which its ghost shows."""
+    with_turret, without = layout(), layout(**{"vehicle.hull": hull_shape})
+    for part in (joined(hull(without))[0], np.vstack(hull_edges(without))):
+        assert top[0] < part[:, 2].max() < top[1]
+        assert part[:, 0].max() < without.sprocket.x + 0.6
+    for part in (joined(hull(with_turret))[0], np.vstack(hull_edges(with_turret))):
         assert part[:, 2].max() > 1.9
-    assert layout_of(build_system(load_config("robot"))).light
+
+
+@pytest.mark.parametrize("hull_shape", HULLS)
+def test_nothing_of_a_hull_stands_out_over_its_glacis(hull_shape: str) -> None:
+    """What lies on it is then seen: tip, foot of the glacis and roof are corners of a convex side."""
+    side = hull_edges(layout(**{"vehicle.hull": hull_shape}))[0][[0, 2, 3, 4], ::2]
+    along = np.diff(side, axis=0)
+    assert (along[:-1, 0] * along[1:, 1] - along[:-1, 1] * along[1:, 0] > 0).all()
+
+
+@pytest.mark.parametrize(
+    ("preset", "shape"), [("paper", "turret"), ("m113", "carrier"), ("m113_rs", "carrier"), ("robot", "plain")]
+)
+def test_presets_are_drawn_as_what_they_are(preset: str, shape: str) -> None:
+    run = simulate(load_config(preset).replace({"simulation.duration": 0.1}))
+    assert build_scene(run).layout.hull == shape
 
 
 @pytest.mark.parametrize("changes", VEHICLES.values(), ids=VEHICLES)

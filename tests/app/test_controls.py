@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -21,6 +22,7 @@ from app.controls import (
 )
 from model.config import Config, ConfigError, load_config
 from model.parameters import NOTES, PARAMETER, PARAMETERS
+from tests.app.conftest import as_typed
 
 PAPER = load_config("paper")
 STIFFNESS = "vehicle.road_suspension.stiffness"
@@ -97,11 +99,16 @@ def test_typed_texts() -> None:
 def test_labels_fit_one_line_and_hints_explain() -> None:
     for parameter in PARAMETERS:
         if parameter.group != NOTES:
-            assert len(shown_label(parameter)) <= 26, parameter.key
-            assert parameter.description in hint(parameter)
+            assert len(as_typed(shown_label(parameter))) <= 26, parameter.key
+            unit = shown_label(parameter)[len(parameter.label) + 2 :]
+            assert not re.search(" |/(?!\u2060)", unit), f"{unit} may be broken"
+            explained = parameter.description.lower().replace("left out:", "empty:")
+            told = hint(parameter).lower()
+            assert explained in told or (parameter.kind == "choice" and explained.replace("_", " ") in told)
+            assert "left out" not in told
             assert parameter.symbol in hint(parameter)
             assert parameter.shown_unit in hint(parameter)
-    assert shown_label(PARAMETER[STIFFNESS]) == "Road stiffness, kN/m"
+    assert as_typed(shown_label(PARAMETER[STIFFNESS])) == "Road stiffness, kN/m"
     assert "When it grows: " in hint(PARAMETER[STIFFNESS])
 
 
@@ -183,14 +190,14 @@ def test_rates_of_the_torsion_bar_are_shown_in_its_units(server: viser.ViserServ
     controls = panel(server)
     damping = "vehicle.road_suspension.damping"
     controls.show(PAPER.replace({"vehicle.road_suspension.basis": "torsion"}))
-    assert controls[STIFFNESS]._one.label == "Road stiffness, kN m/rad"
+    assert as_typed(controls[STIFFNESS]._one.label) == "Road stiffness, kN m/rad"
     assert "unit kN m/rad" in controls[STIFFNESS]._list.hint
     assert "at the wheel" not in controls[STIFFNESS]._one.hint
-    assert controls[damping]._one.label == "Road damping, kN m s/rad"
-    assert controls["vehicle.imaginary_suspension.stiffness"]._one.label == "Imaginary stiffness, kN/m"
+    assert as_typed(controls[damping]._one.label) == "Road damping, kN m s/rad"
+    assert as_typed(controls["vehicle.imaginary_suspension.stiffness"]._one.label) == "Imaginary stiffness, kN/m"
     controls.show(PAPER)
-    assert controls[STIFFNESS]._one.label == "Road stiffness, kN/m"
-    assert controls[damping]._one.label == "Road damping, kN s/m"
+    assert as_typed(controls[STIFFNESS]._one.label) == "Road stiffness, kN/m"
+    assert as_typed(controls[damping]._one.label) == "Road damping, kN s/m"
 
 
 def test_a_refusal_has_the_unit_of_the_basis() -> None:

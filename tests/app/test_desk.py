@@ -293,6 +293,23 @@ def test_the_look_comes_back(explore: Any, open_tab: Any) -> None:
     wait_for(lambda: explorer.sessions[-1]._window.scene.dark)
 
 
+def test_the_browsers_look_is_taken_until_another_is_chosen(explore: Any, open_tab: Any) -> None:
+    explorer, storage = explore(), {}
+    tab: Tab = open_tab(explorer, storage=storage)
+    wait_for(lambda: tab.shows_run(1) and tab.widget("Dark")["value"] is False)
+    tab.use("Dark pages", True)
+    wait_for(lambda: tab.widget("Dark")["value"] is True, "the browser's look")
+    wait_for(lambda: explorer.sessions[-1]._window.scene.dark)
+    wait_for(lambda: json.loads(storage["trackride"])["dark"] is None)
+    tab.use("Dark", False)
+    wait_for(lambda: json.loads(storage["trackride"])["dark"] is False, "the choice to be stored")
+    again: Tab = open_tab(explorer, storage=storage)
+    again.use("Dark pages", True)
+    wait_for(lambda: again.shows_run(1) and explorer.sessions[-1]._desk._prefers_dark)
+    wait_for(lambda: rows(again) == ["Paper vehicle"])
+    assert again.widget("Dark")["value"] is False
+
+
 @pytest.mark.parametrize("stored", ["", "nonsense", "null", "{}", '{"presets": [1], "wish": 2, "runs": [{}]}'])
 def test_what_is_no_state_is_left_alone(explore: Any, open_tab: Any, stored: str) -> None:
     tab: Tab = open_tab(explore(), storage={"trackride": stored})

@@ -45,7 +45,7 @@ def test_all_comes_back_but_the_trajectories() -> None:
 @pytest.mark.parametrize("added", ADDED)
 def test_a_road_made_of_parts_comes_back(added: str) -> None:
     wish = Wish(PAPER, with_part(PAPER, added))
-    found = state_from(state_text(PAPER, wish, [wish.config()], (), None, dark=False))
+    found = state_from(state_text(PAPER, wish, [wish.config()], (), None, dark=None))
     assert found.wish is not None
     assert found.wish.config() == found.presets[0] == wish.config()
 

@@ -10,7 +10,7 @@ import pytest
 import app.window
 from model.config import Config
 from model.trajectory import Trajectory
-from tests.app.conftest import PATIENCE, FakeScene, Tab, make_run, wait_for
+from tests.app.conftest import PATIENCE, FakeScene, Tab, as_typed, make_run, wait_for
 
 
 def test_what_is_not_seen_at_first_waits_until_the_page_stands(
@@ -23,7 +23,7 @@ def test_what_is_not_seen_at_first_waits_until_the_page_stands(
     scene: FakeScene = explorer.sessions[0]._window.scene
 
     def labels() -> set[str]:
-        return {widget["props"].get("label", "") for widget in tuple(tab.widgets.values())}
+        return {as_typed(widget["props"].get("label") or "") for widget in tuple(tab.widgets.values())}
 
     assert {"Speed, km/h", "Preset", "Export", "Vehicle"} <= labels()
     assert "Hull mass, kg" not in labels()

@@ -182,6 +182,7 @@ def test_faults_of_an_uploaded_configuration_are_all_shown_escaped_and_nothing_c
     upload(tab, "Open a configuration", "bad.yaml", text.encode())
     shown = wait_for(lambda: html(tab, "trackride-faults"), "the faults")
     assert shown.count("<li>") == 3
+    assert "<style>" in shown  # those of tabs that nobody has opened are not there
     assert "from 0.5 to 100 km/h" in shown
     assert "the nearest known one is road" in shown
     assert "<img" not in shown
@@ -193,6 +194,7 @@ def test_faults_of_an_uploaded_configuration_are_all_shown_escaped_and_nothing_c
 def test_a_configuration_is_edited_as_text(tab: Tab) -> None:
     tab.use("As they are", "Edit YAML")
     text = tab.widget("YAML")["value"]
+    assert "<style>" in html(tab, "trackride-yaml")
     assert parse_config(text).drive.speed_kmh == 22
     tab.use("YAML", text.replace("speed_kmh: 22", "speed_kmh: 2200"))
     tab.use("Use this", True)
@@ -266,19 +268,25 @@ def test_the_table_of_figures() -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "text"),
+    ("value", "resolution", "text"),
     [
-        (None, "–"),
-        (0.0, "0"),
-        (0.0912, "0.0912"),
-        (1.346, "1.35"),
-        (18.74, "18.7"),
-        (182.7, "183"),
-        (0.00001, "0.0000"),
+        (None, 0, "–"),
+        (0.0, 0, "0"),
+        (0.0912, 0, "0.0912"),
+        (1.346, 0, "1.35"),
+        (18.74, 0, "18.7"),
+        (182.7, 0, "183"),
+        (0.00001, 0, "0.0000"),
+        (0.09, 0.005, "0.090"),
+        (0.3, 0.1, "0.3"),
+        (1.235, 0.005, "1.24"),
+        (4.0, 1.0, "4"),
     ],
 )
-def test_figures_have_three_digits(value: float | None, text: str) -> None:
-    assert figure_text(value) == text
+def test_figures_have_three_digits_and_none_that_nobody_measured(
+    value: float | None, resolution: float, text: str
+) -> None:
+    assert figure_text(value, resolution) == text
 
 
 @pytest.mark.parametrize(

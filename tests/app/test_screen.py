@@ -14,6 +14,7 @@ from app.screen import (
     LEFT,
     LOWEST,
     MODES,
+    NARROW,
     PLOTS_HEAD,
     RIGHT,
     SEAMS,
@@ -54,6 +55,14 @@ def test_a_window_made_larger_or_smaller_shares_its_width_anew() -> None:
     assert maximised.player_x + maximised.player_width / 2 == pytest.approx((2560 - LEFT - WIDEST - SEAMS) / 2, abs=3)
     again = screen.update(1280 - LEFT - WIDEST - SEAMS, 720)
     assert again == opened
+
+
+def test_in_a_narrow_window_the_plots_leave_room_for_the_player() -> None:
+    screen = Screen(1024, 768)
+    layout = screen.update(1024 - LEFT - RIGHT - SEAMS, 768)
+    assert layout is not None
+    assert NARROW <= layout.right < RIGHT
+    assert layout.player_x + layout.player_width < 1024 - LEFT - layout.right - SEAMS
 
 
 def test_a_seam_that_is_moved_stays_where_it_is() -> None:
@@ -114,7 +123,7 @@ def test_neither_card_nor_player_hides_the_vehicle(width: int, height: int, view
     screen, docked = Screen(width, height), width - LEFT - RIGHT - SEAMS
     sizes = screen.update(docked, height)
     assert sizes is not None
-    layout = layout_of(build_system(load_config("paper")))
+    layout = layout_of(build_system(load_config("paper")), "turret")
     stood = standpoint(view, layout, (width - LEFT - sizes.right - SEAMS) / height)
     upper = heights_in_picture(np.concatenate(hull_edges(layout)), stood, height)
     assert upper.min() > wheel_card.GAP + wheel_card.HEIGHT

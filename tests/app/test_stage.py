@@ -259,7 +259,7 @@ def seen(point: np.ndarray, position: np.ndarray, look_at: np.ndarray, fov: floa
 @pytest.mark.parametrize("view", VIEWS)
 @pytest.mark.parametrize("changes", [{}, {"vehicle.road_wheels.count": 14}, {"vehicle.road_wheels.count": 2}])
 def test_a_view_has_what_it_is_for_in_the_picture(view: Any, aspect: float, changes: dict[str, object]) -> None:
-    vehicle: Layout = layout_of(build_system(load_config("paper").replace(changes)))
+    vehicle: Layout = layout_of(build_system(load_config("paper").replace(changes)), "turret")
     place = standpoint(view, vehicle, aspect)
     s = vehicle.scale
     if view == "wheel":
@@ -272,6 +272,18 @@ def test_a_view_has_what_it_is_for_in_the_picture(view: Any, aspect: float, chan
         assert np.abs(where).max() < 1.0, corner
     assert place.position[1] < 0.0  # on the right side, where the lamp stands and the labels are
     assert place.position[2] > 0.3 * s
+
+
+def test_the_camera_goes_nearer_to_a_much_smaller_vehicle_only(tab: Tab, paper: Trajectory) -> None:
+    stage = Stage(tab)  # type: ignore[arg-type]
+    stage.show(paper)
+    stage.set_view("front")
+    for preset, moves in (("m113", False), ("robot", True), ("robot", False), ("paper", True)):
+        before = np.array(tab.camera.position)
+        stage.show(simulate(load_config(preset).replace({"simulation.duration": 0.1})))
+        after = np.array(tab.camera.position)
+        assert (np.linalg.norm(after - before) > 1.0) == moves
+        assert after[0] > 2 * abs(after[1])  # still from the front
 
 
 def test_the_camera_fits_a_new_shape_of_the_picture_unless_moved(tab: Tab, paper: Trajectory) -> None:

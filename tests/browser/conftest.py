@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import pytest
 from playwright.sync_api import Browser, ViewportSize
 
 from tests.browser.driver import Explorer, chromium, running_explorer
 
-OpenTab = Callable[[], Explorer]
+OpenTab = Callable[..., Explorer]
 SIZE: ViewportSize = {"width": 1280, "height": 720}
 
 
@@ -27,11 +28,11 @@ def browser() -> Iterator[Browser]:
 
 @pytest.fixture
 def open_tab(browser: Browser, address: str) -> Iterator[OpenTab]:
-    """A function that opens the explorer in a tab of its own."""
+    """A function that opens the explorer in a tab of its own, of a browser with these settings."""
     contexts = []
 
-    def open_one() -> Explorer:
-        contexts.append(browser.new_context(viewport=SIZE))
+    def open_one(**settings: Any) -> Explorer:
+        contexts.append(browser.new_context(viewport=SIZE, **settings))
         return Explorer(contexts[-1].new_page()).open(f"{address}/?fixedDpr=0.25")
 
     yield open_one

@@ -89,8 +89,13 @@ def test_a_value_out_of_range_is_refused_with_range_and_unit_and_the_run_stays(a
 
 def test_tabs_are_independent(at_rest: Explorer, open_tab: OpenTab) -> None:
     before, value = at_rest.status.inner_text(), at_rest.value("Speed")
-    other = open_tab()
+    other = open_tab(color_scheme="dark")
     other.button("Pause").click()  # so that two pages do not draw at once
+    look = "data-mantine-color-scheme"
+    expect(other.page.locator("html")).to_have_attribute(look, "dark")
+    other.page.emulate_media(color_scheme="light")
+    expect(other.page.locator("html")).to_have_attribute(look, "light")
+    expect(at_rest.page.locator("html")).to_have_attribute(look, "light")
     other.press("Speed", "End")
     other.wait_for_run(after=1)
     other.wait_for_value("Speed", "now > value", value)

@@ -31,6 +31,28 @@ WRONG = f"""() => ({CHARTS})().flatMap(chart => {{  // [what is told of a curve 
   }}).filter(([told, value]) => !(Math.abs(told - value) <= 0.5 / 10 ** (told.split('.')[1]?.length ?? 0) + 1e-6));
 }})"""
 
+# The named curves of the first chart at these values, its other ones at 1
+DRAW = f"""([names, values]) => {{
+  const chart = ({CHARTS})()[0], x = values.map((_, k) => 10 * k / (values.length - 1));
+  const drawn = chart.series.slice(1).map(curve => curve.class === 'run' && names.includes(curve.label));
+  chart.setData([x, ...drawn.map(it => it ? values : x.map(() => 1))]);
+}}"""
+# Of a column of pixels near its left end the upper half, as [red, green, blue, alpha]
+COLUMN = f"""() => {{
+  const chart = ({CHARTS})()[0], {{left, top, width, height}} = chart.bbox;
+  const {{data}} = chart.ctx.getImageData(left + 0.05 * width, top, 1, height / 2);
+  return Array.from({{length: height / 2}}, (_, k) => [...data.slice(4 * k, 4 * k + 4)]);
+}}"""
+# How thick a coloured line in the column is, px
+INK = f"""() => ({COLUMN})().filter(([r, g, b]) => Math.max(r, g, b) - Math.min(r, g, b) > 60)
+  .reduce((sum, [, , , alpha]) => sum + alpha / 255, 0)"""
+COLOUR = f"""(name) => {{  // of the line in the column, and its distance to a curve's own
+  const chart = ({CHARTS})()[0], k = chart.series.findIndex(curve => curve.label === name && curve.class === 'run');
+  const own = chart.series[k].stroke(chart, k).match(/[0-9a-f]{{2}}/g).map(part => parseInt(part, 16));
+  const seen = ({COLUMN})().reduce((most, pixel) => pixel[3] > most[3] ? pixel : most);
+  return Math.hypot(...own.slice(0, 3).map((part, j) => part - seen[j]));
+}}"""
+
 
 def show(page: Page, tab: str) -> None:
     page.get_by_role("tab", name=tab, exact=True).click()
@@ -113,6 +135,26 @@ def test_the_values_at_the_cursor_lie_on_the_curves_between_the_points_that_are_
     for tab in ("Loads", "Ride"):
         show(page, tab)
         page.wait_for_function(f"() => ({CHARTS})().length > 2 && ({WRONG})().length === 0")
+
+
+def test_curves_are_thicker_than_a_pixel_where_there_is_room(at_rest: Explorer) -> None:
+    page = at_rest.page
+    show(page, "Loads")
+    page.evaluate(DRAW, [["R2"], [8] * 200])
+    page.wait_for_function(f"() => ({INK})() > 1.25 && ({INK})() < 2")
+    page.evaluate(DRAW, [["R2"], [8] * 50 + [0, 8] * 225])
+    page.wait_for_function(f"() => ({INK})() > 0.5 && ({INK})() < 1.1")
+
+
+def test_a_wheel_whose_name_is_pointed_at_is_drawn_in_front(at_rest: Explorer) -> None:
+    page = at_rest.page
+    show(page, "Loads")
+    page.evaluate(DRAW, [["R2", "R6"], [8] * 3])  # the later one covers the other
+    page.wait_for_function(f"() => ({COLOUR})('R6') < 30 && ({COLOUR})('R2') > 60")
+    page.locator(".uplot:visible").first.locator(".u-series.run th", has_text="R2").hover()
+    page.wait_for_function(f"() => ({COLOUR})('R2') < 30")
+    page.mouse.move(640, 60)
+    page.wait_for_function(f"() => ({COLOUR})('R6') < 30")
 
 
 def test_the_ride_is_told_in_a_line_and_in_tables(at_rest: Explorer) -> None:

@@ -82,10 +82,10 @@ def test_half_rounds_come_again_and_again():
     assert height.max() == pytest.approx(0.1, abs=1e-4)
 
 
-def test_the_driver_may_move_under_way():
+def test_the_driver_may_move_and_the_hull_be_drawn_otherwise_under_way():
     drive = LiveDrive(PAPER)
     drive.advance(0.1)
-    assert drive.change(PAPER.replace({"vehicle.seat.x": -1.0}))
+    assert drive.change(PAPER.replace({"vehicle.seat.x": -1.0, "vehicle.hull": "carrier"}))
 
 
 def test_other_bodies_start_anew():

@@ -263,6 +263,8 @@ def test_changes_that_mean_nothing_are_left_out():
     assert found["Vertical acceleration, rms"].change is None
     assert found["Time in the air, R1"].change is None  # before: never
     assert found["Time in the air, R1"].now == pytest.approx(1 / RATE)
+    assert found["Time in the air, R1"].resolution == pytest.approx(1 / RATE)
+    assert found["Peak load, R1"].resolution == 0
     assert found["Suspension travel, R1"].change is None
     longer = standing(samples=9)
     longer.normal_load[2, 0] = 0
