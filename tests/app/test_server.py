@@ -158,3 +158,13 @@ def test_the_browser_opens_the_address_in_use(monkeypatch: pytest.MonkeyPatch, t
     serve(PAPER, "paper", port=taken)
     assert opened[0].startswith("http://127.0.0.1:")
     assert not opened[0].endswith(f":{taken}")
+
+
+def test_no_page_waits_for_libraries_that_its_panels_do_not_need() -> None:
+    """Nor do figures, whenever they are made, share pyplot's global state."""
+    code = "import sys, app.session; print(*sys.modules); import app.figure; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    for_panels, for_figures = (set(line.split()) for line in done.stdout.splitlines())
+    assert not for_panels & {"scipy.spatial", "scipy.signal", "scipy.optimize", "trimesh", "matplotlib"}
+    assert "matplotlib" in for_figures
+    assert "matplotlib.pyplot" not in for_figures
