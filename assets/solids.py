@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import cache
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -47,7 +48,8 @@ def both_sides(parts: Sequence[Part]) -> list[Part]:
 
 def box(centre: tuple[float, float, float], size: tuple[float, float, float], colour: Rgba) -> Part:
     """A box with flat faces."""
-    return CUBE._replace(vertices=CUBE.vertices * size + np.array(centre), colour=colour)
+    cube = _cube()
+    return cube._replace(vertices=cube.vertices * size + np.array(centre), colour=colour)
 
 
 def convex(points: Sequence[tuple[float, float, float]] | np.ndarray, colour: Rgba, chamfer: float = 0.0) -> Part:
@@ -185,4 +187,7 @@ def _inset(outline: np.ndarray, distance: float) -> np.ndarray:
     return outline + step[:, None] * (back + ahead)
 
 
-CUBE = convex([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)], (0, 0, 0, 255))
+@cache
+def _cube() -> Part:
+    """Of edge length 1, about the origin. Not made before it is asked for, since that loads SciPy for half a second."""
+    return convex([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)], (0, 0, 0, 255))

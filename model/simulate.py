@@ -1,4 +1,7 @@
-"""Config -> Trajectory: rest pose, then the run in chunks, with progress and a way to stop it."""
+"""Config -> Trajectory: rest pose, then the run in chunks, with progress and a way to stop it.
+
+Compiled modules are imported by what runs them: Numba takes a third of a second, and the explorer listens without it.
+"""
 
 from __future__ import annotations
 
@@ -10,9 +13,7 @@ import numpy as np
 
 from model.config import Config
 from model.equilibrium import rest_pose
-from model.integrate import ADVICE, REASON, Integration, Status
 from model.lanes import pack
-from model.road import SPARE, build_road
 from model.trajectory import RunStatistics, Trajectory
 from model.vehicle import System, build_system
 
@@ -34,6 +35,9 @@ def starting_state(system: System) -> tuple[np.ndarray, np.ndarray]:
 @cache
 def warm_up(integrator: str = Config().simulation.integrator) -> None:
     """Compile what an integrator needs, or load it compiled: once a process, half a minute the very first time."""
+    from model.integrate import Integration
+    from model.road import build_road
+
     config = Config()
     system = build_system(config)
     y, _ = starting_state(system)
@@ -51,6 +55,9 @@ def simulate(
     A run that diverges or is stopped is returned as far as it came, with a status and advice.
     Raises NoEquilibriumError when the vehicle has no rest pose to start from.
     """
+    from model.integrate import ADVICE, REASON, Integration, Status
+    from model.road import SPARE, build_road
+
     warm_up(config.simulation.integrator)
     began = perf_counter()
     system, road = build_system(config), build_road(config)

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import io
-import subprocess
-import sys
 import xml.etree.ElementTree as ElementTree
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -257,8 +255,3 @@ def test_several_threads_may_make_figures_at_once(paper):
     for data, title in zip(made, ("One", "Two"), strict=True):
         ElementTree.fromstring(data)
         assert f"<!-- {title} -->" in data.decode()
-
-
-def test_no_global_state_of_pyplot():
-    code = "import sys, app.figure; sys.exit('matplotlib.pyplot' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

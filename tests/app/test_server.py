@@ -158,3 +158,14 @@ def test_the_browser_opens_the_address_in_use(monkeypatch: pytest.MonkeyPatch, t
     serve(PAPER, "paper", port=taken)
     assert opened[0].startswith("http://127.0.0.1:")
     assert not opened[0].endswith(f":{taken}")
+
+
+def test_nobody_waits_for_libraries_that_are_needed_later() -> None:
+    """Not for Numba until it listens, not for solids and figures until the panels stand; pyplot is never loaded."""
+    code = "; ".join(f"import {module}; print(*sys.modules)" for module in ("app.server", "app.session", "app.figure"))
+    done = subprocess.run([sys.executable, "-c", f"import sys; {code}"], capture_output=True, text=True, check=True)
+    to_listen, to_fill, to_draw = (set(line.split()) for line in done.stdout.splitlines())
+    assert not to_listen & {"numba", "scipy"}
+    assert not to_fill & {"scipy.spatial", "scipy.signal", "scipy.optimize", "trimesh", "matplotlib"}
+    assert "matplotlib" in to_draw
+    assert "matplotlib.pyplot" not in to_draw

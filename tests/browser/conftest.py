@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, ViewportSize
+from playwright.sync_api import Browser, BrowserContext, ViewportSize
 
-from tests.browser.driver import Explorer, chromium, running_explorer
+from tests.browser.driver import DRAWING, Explorer, chromium, running_explorer
 
 OpenTab = Callable[..., Explorer]
 SIZE: ViewportSize = {"width": 1280, "height": 720}
@@ -26,13 +26,20 @@ def browser() -> Iterator[Browser]:
         yield browser
 
 
+def new_context(browser: Browser, **settings: Any) -> BrowserContext:
+    """A user of their own, whose pages draw nothing in 3-D until a test says so: in software it takes both cores."""
+    context = browser.new_context(viewport=SIZE, **settings)
+    context.add_init_script(DRAWING)
+    return context
+
+
 @pytest.fixture
 def open_tab(browser: Browser, address: str) -> Iterator[OpenTab]:
     """A function that opens the explorer in a tab of its own, of a browser with these settings."""
     contexts = []
 
     def open_one(**settings: Any) -> Explorer:
-        contexts.append(browser.new_context(viewport=SIZE, **settings))
+        contexts.append(new_context(browser, **settings))
         return Explorer(contexts[-1].new_page()).open(f"{address}/?fixedDpr=0.25")
 
     yield open_one
@@ -42,7 +49,7 @@ def open_tab(browser: Browser, address: str) -> Iterator[OpenTab]:
 
 @pytest.fixture(scope="session")
 def shared(browser: Browser, address: str) -> Iterator[Explorer]:
-    context = browser.new_context(viewport=SIZE)
+    context = new_context(browser)
     yield Explorer(context.new_page()).open(f"{address}/?fixedDpr=0.25")
     context.close()
 

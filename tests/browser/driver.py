@@ -24,6 +24,10 @@ FIRST_RUN = 120_000  # ms: the interface, and the model's compilation if nobody 
 SOON = 60_000  # ms: anything else, on a busy machine with software WebGL…
 DOWNLOAD = 120_000  # ms: … but what the browser has to draw a large picture for
 
+DRAWING = """['drawArrays', 'drawElements', 'drawArraysInstanced', 'drawElementsInstanced'].forEach(name => {
+  const canvas = WebGL2RenderingContext.prototype, draw = canvas[name];
+  canvas[name] = function (...what) { if (window.drawing) draw.apply(this, what); };
+})"""  # for pages that draw in 3-D only while they are told to
 NEW_CURVES = "old => document.querySelector('.uplot canvas').toDataURL() !== old"  # JavaScript
 
 expect.set_options(timeout=SOON)
@@ -89,6 +93,13 @@ class Explorer:
         self.wait_for_run(after=before)
         self.wait_for_value("Time, s", "now === 0")
         expect(self.messages).to_have_count(0)
+
+    @contextmanager
+    def drawing(self) -> Iterator[None]:
+        """Draw in 3-D meanwhile, in a page that does not otherwise (DRAWING)."""
+        self.page.evaluate("window.drawing = true")
+        yield
+        self.page.evaluate("window.drawing = false")
 
     @property
     def messages(self) -> Locator:

@@ -57,7 +57,7 @@ def test_a_screenshot_shows_the_vehicle_and_is_named_after_preset_and_change(at_
     at_rest.press("Amplitude", "ArrowRight")
     at_rest.wait_for_run(after=before)
     at_rest.fold("Export")
-    with at_rest.page.expect_download(timeout=DOWNLOAD) as download:
+    with at_rest.drawing(), at_rest.page.expect_download(timeout=DOWNLOAD) as download:
         at_rest.button("Screenshot").click()
     at_rest.fold("Export")
     name = download.value.suggested_filename

@@ -94,6 +94,8 @@ def test_zoom_in_one_plot_is_the_zoom_of_all_over_tabs_and_runs(at_rest: Explore
 
     show(page, "Load map")
     page.wait_for_function(f"() => Math.abs(({MAP})()[0] - 3) < 0.1 && Math.abs(({MAP})()[1] - 6) < 0.1")
+    picture = page.locator(".trackride-map img.far").first
+    at_rest.wait_until_still(lambda: picture.get_attribute("src"))  # the new run's map has come
     box = page.locator(".trackride-map .field").first.bounding_box()
     assert box is not None
     page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 10)
