@@ -20,7 +20,6 @@ from model.validation import Fault
 PRECISION = 4  # decimals that a box takes and shows
 FINEST_STEP = 10**-PRECISION  # parameters that need finer ones are typed as text: 1e-6
 ONE_EACH = " Here one for each road wheel, front first."
-UNBROKEN = str.maketrans({" ": "\u00a0", "/": "/\u2060"})  # a label may go on in a second line, its unit may not
 IMAGINARY = "vehicle.imaginary_"
 IMAGINARY_SWITCH = "vehicle.imaginary_wheels.enabled"
 
@@ -52,7 +51,7 @@ class Wishes(Protocol):
 
 def shown_label(parameter: Parameter) -> str:
     """Name and unit: "Road stiffness, kN/m", the unit in one piece."""
-    unit = parameter.shown_unit.translate(UNBROKEN)
+    unit = parameter.shown_unit.replace(" ", "\u00a0")
     return f"{parameter.label}, {unit}" if unit else parameter.label
 
 

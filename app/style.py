@@ -16,8 +16,8 @@ BRAND = (28, 108, 178)
 # IN_VIEW and NIGHT stand for hidden checkboxes: a page in the background takes the tick from one, and a browser that is
 # set to dark pages gives the other one its tick. No :has() in the rules: with it the browser takes eight times as long
 # over each change of the page, and many come in a second. On a phone viser puts all panels into one sheet, which would
-# hide the vehicle. Small text is read at 4.5:1 at least (WCAG 2.2, 1.4.3), which the greys and blues that viser would
-# take do not reach.
+# hide the vehicle. In labels it allows a break after each slash, which would part units. Small text is read at 4.5:1 at
+# least (WCAG 2.2, 1.4.3), which the greys and blues that viser would take do not reach.
 PAGE = """<img hidden src="data:," onerror="
   this.parentElement.dataset.trackride = 'page';
   this.parentElement.parentElement.dataset.trackride = 'panel';
@@ -68,6 +68,7 @@ PAGE = """<img hidden src="data:," onerror="
   [data-trackride="panel"] div[style*="flex-shrink: 0"] > p { letter-spacing: -0.3px !important;
     font-size: 0.8em !important; }
   [data-trackride="panel"] > .mantine-Paper-root { margin-bottom: 1.15em !important; }
+  label wbr { display: none; }
   @media (max-width: 36em) {
     .mantine-Paper-root[style*="max-height: 60%"] { width: 100% !important; max-height: 45% !important; }
     .mantine-Paper-root[style*="max-height: 60%"] div[style="width: 20em;"] { width: 100% !important; }

@@ -28,7 +28,7 @@ PATIENCE = 10.0  # s that a test waits for something to happen
 
 def as_typed(label: str) -> str:
     """A label without what keeps its unit on one line."""
-    return label.replace("\u00a0", " ").replace("\u2060", "")
+    return label.replace("\u00a0", " ")
 
 
 def wait_for(condition: Callable[[], Any], what: str = "it") -> Any:

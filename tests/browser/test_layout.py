@@ -53,6 +53,28 @@ def test_no_box_moves_while_a_slider_is_dragged(at_rest: Explorer, tab: str) -> 
     assert len(seen) == 1, f"{len(seen)} arrangements were seen: {json.dumps(moved[:10])}"
 
 
+def test_units_stay_on_one_line(at_rest: Explorer) -> None:
+    for folder in ("Track", "Ground contact"):
+        at_rest.fold(folder)
+    lines = """name => {  // the places, from above, at which the letters of a label's unit stand
+      const label = [...document.querySelectorAll('label')].find(label => label.textContent.startsWith(name));
+      const letters = document.createTreeWalker(label, NodeFilter.SHOW_TEXT), tops = [];
+      let unit = false;
+      while (letters.nextNode()) [...letters.currentNode.data].forEach((letter, k) => {
+        const range = document.createRange();
+        range.setStart(letters.currentNode, k);
+        range.setEnd(letters.currentNode, k + 1);
+        if (unit && letter.trim()) tops.push(range.getBoundingClientRect().top);
+        unit ||= letter === ',';
+      });
+      return tops;
+    }"""
+    for name in ("Imaginary damping", "Ground damping"):
+        at_rest.page.wait_for_function(f"name => new Set(({lines})(name)).size === 1", arg=name)
+    for folder in ("Track", "Ground contact"):
+        at_rest.fold(folder)
+
+
 def test_a_hint_comes_over_the_label_and_goes_again(at_rest: Explorer) -> None:
     page = at_rest.page
     hint = page.get_by_role("tooltip").filter(has_text="presses an imaginary wheel to the ground")
