@@ -49,10 +49,10 @@ class LiveDrive:
         self._start(config)
 
     def _start(self, config: Config) -> None:
-        self.config = config
-        self.distance = 0.0  # m from where it started to the present origin
         system = build_system(config)
         y, self._static_load = starting_state(system)
+        self.config = config
+        self.distance = 0.0  # m from where it started to the present origin
         self._shapes = Shapes.of(build_road(config))
         self._past: deque[tuple[np.ndarray, Samples]] = deque()
         self._seconds = 0.0
@@ -82,7 +82,10 @@ class LiveDrive:
         return self._run.status
 
     def change(self, config: Config) -> bool:
-        """Drive on with another configuration; False where that meant to start anew from rest."""
+        """Drive on with another configuration; False where that meant to start anew from rest.
+
+        Raises NoEquilibriumError for a vehicle that cannot, and drives on as before.
+        """
         old = self.config
         parts = [name for name in type(old.vehicle).model_fields if name not in CHANGEABLE]
         same_bodies = all(getattr(old.vehicle, name) == getattr(config.vehicle, name) for name in parts)

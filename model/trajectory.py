@@ -98,9 +98,8 @@ class Trajectory:
             sound = parts[key].shape == shape and parts[key].dtype == float and (np.abs(parts[key]) < LARGEST).all()
             if not sound:
                 raise ValueError(f"{no_run}: {key} must hold {shape} finite numbers")
-        rate = config.simulation.output_rate
-        if not np.allclose(parts["t"], np.arange(parts["t"].size) / rate):
-            raise ValueError(f"{no_run}: t must begin at 0 and grow by 1/{rate:g} s")
+        if (parts["t"][:1] != 0.0).any() or (np.diff(parts["t"]) <= 0.0).any():
+            raise ValueError(f"{no_run}: t must begin at 0 and grow")
         return cls(**parts, **texts, config=config, statistics=RunStatistics(**counters))
 
     def to_bytes(self, suffix: str) -> bytes:

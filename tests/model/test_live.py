@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from model import load_config, simulate
+from model.equilibrium import NoEquilibriumError
 from model.integrate import ADVICE, REASON, Status
 from model.live import AHEAD, JOIN_AHEAD, REBASE, LiveDrive
+from model.ride import summary
 
 PAPER = load_config("paper")
 
@@ -149,3 +151,14 @@ def test_a_drive_that_became_too_stiff_ends_and_says_why():
     assert not drive.change(PAPER)
     drive_on(drive, 0.1)
     assert drive.status is Status.RUNNING
+
+
+def test_a_vehicle_that_cannot_rest_leaves_the_drive_as_it_was():
+    drive = LiveDrive(PAPER)
+    drive_on(drive, 0.2)
+    with pytest.raises(NoEquilibriumError):
+        drive.change(PAPER.replace({"vehicle.road_wheels.count": 2}))
+    drive_on(drive, 0.2)
+    assert drive.recent().config == PAPER
+    assert drive.recent().t[0] == 0.0
+    assert summary(drive.recent()).names[-1] == "I5"
