@@ -44,7 +44,7 @@ PLACES = {
     "dask": {"model.study"},
     "distributed": {"model.study"},
     "multiprocessing": {"model.study"},
-    "trimesh": set(),
+    "trimesh": {"assets.solids"},
 }
 NOT_IN_MODEL = {"app", "assets", "viser", "threading", "asyncio", "trimesh", "matplotlib", "tkinter", "rich", "typer"}
 PURE = (
