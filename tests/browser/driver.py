@@ -83,8 +83,7 @@ class Explorer:
             self.button("○ Run").click()
             expect(self.status).to_contain_text("real time")
         if self.button("Pause").is_visible():
-            self.button("Pause").click()
-        expect(self.button("Play").first).to_be_visible()
+            self.pause()
         self.press("Time, s", "Home")
         self.page.get_by_role("tab", name="Loads").click()
         before = self.run_number()
@@ -93,6 +92,11 @@ class Explorer:
         self.wait_for_run(after=before)
         self.wait_for_value("Time, s", "now === 0")
         expect(self.messages).to_have_count(0)
+
+    def pause(self) -> None:
+        """Stop what plays, and see it stopped: the button is another then, and a later click on it could miss it."""
+        self.button("Pause").click()
+        expect(self.button("▶ Play")).to_be_visible(timeout=SOON)
 
     @contextmanager
     def drawing(self) -> Iterator[None]:

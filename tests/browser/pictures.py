@@ -30,7 +30,7 @@ def open_at_rest(explorer: Explorer, address: str) -> None:
     """The explorer, paused in the middle of the run."""
     explorer.open(address)
     explorer.page.wait_for_timeout(4000)  # to where the waves are in full height
-    explorer.button("Pause").click()
+    explorer.pause()
     explorer.page.wait_for_timeout(1000)
 
 

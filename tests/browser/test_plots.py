@@ -180,7 +180,7 @@ def test_a_mode_swings_in_the_3d_view_until_the_run_is_played(at_rest: Explorer)
     expect(at_rest.status).to_contain_text("real time")
     page.wait_for_function("() => !('/ghost' in __viserMutable.nodePoseData)")
     expect(choice).to_have_value("– the run –")
-    at_rest.button("Pause").click()
+    at_rest.pause()
 
 
 def test_a_wheel_hidden_in_a_plot_takes_its_baseline_along(at_rest: Explorer) -> None:
