@@ -95,7 +95,7 @@ class Window:
         make_scene: Callable[[viser.ClientHandle, bool], Scene],
     ) -> None:
         self._client, self._actions = client, actions
-        self._dark = dark = False
+        self._dark = False  # until the browser has said how it is set
         self._run: Trajectory | None = None
         self._baseline: Trajectory | None = None
         self._drive: DriveState | None = None  # the last of the drive that is shown
@@ -112,7 +112,7 @@ class Window:
         layout = self._screen.first()
         gui = client.gui
         with client.atomic():
-            apply_theme(gui, dark)
+            apply_theme(gui, self._dark)
             gui.set_panel_label("Trackride")
             gui.main_panel.dock_left()
             gui.main_panel.set_width(LEFT)
@@ -126,13 +126,13 @@ class Window:
             with self._controls.middle:
                 self._folders = [gui.add_folder(name, expand_by_default=False) for name in FOLDERS]
             self._plots_panel = gui.add_panel()
-            self._plots = PlotPanel(client, self._plots_panel, layout.page_height, dark, actions)
+            self._plots = PlotPanel(client, self._plots_panel, layout.page_height, self._dark, actions)
             self.runs = RunsPanel(gui, self._plots.runs_tab, actions)
             self._plots_panel.dock_right()
             self._player = PlaybackPanel(gui, actions)
             self._card = WheelCard(gui, actions)
             self._resize(layout)
-        self.scene = make_scene(client, dark)
+        self.scene = make_scene(client, self._dark)
         self.scene.on_pick(actions.pick_wheel)
 
     def _fill(self) -> None:
