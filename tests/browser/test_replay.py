@@ -59,9 +59,8 @@ def seen(browser: Browser, page_file: Path) -> Seen:
     requests: list[str] = []
     page.on("request", lambda request: requests.append(request.url))
     page.goto(f"{page_file.as_uri()}?fixedDpr=0.5")
-    page.wait_for_function(f"() => ({PLACE})() > 0")
+    page.wait_for_function(f"() => ({PLACE})() > {DURATION / 2}")  # by then it has put viser's own lights out
     page.evaluate(COUNT_LIGHTS)
-    page.wait_for_function(f"() => ({PLACE})() > {DURATION / 2}")
     page.wait_for_function(f"() => ({PLACE})() < {DURATION / 2}")  # after its end it starts anew
     page.locator("xpath=//*[@role='slider']/ancestor::div[button][1]/button[1]").click()
     page.wait_for_timeout(500)  # until its last step has been taken
