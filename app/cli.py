@@ -19,9 +19,9 @@ from rich.console import Console
 from rich.table import Table
 
 if TYPE_CHECKING:
-    from model.config import Config
-    from model.ride import Summary
-    from model.trajectory import Trajectory
+    from model.analysis.ride import Summary
+    from model.config.config import Config
+    from model.simulation.trajectory import Trajectory
 
 BAD_INPUT, DIVERGED, CANCELLED = 2, 3, 130  # exit status
 RUN_SUFFIXES, PAGE_SUFFIXES = (".npz", ".csv"), (".html",)
@@ -111,7 +111,7 @@ def run(
 def show(config: ConfigArgument = "paper", changes: SetOption = None) -> None:
     """Print the whole of a configuration, defaults included, as YAML."""
     chosen = _configuration(config, changes)
-    from model.config import dump_config
+    from model.config.config import dump_config
 
     sys.stdout.write(dump_config(chosen))
     sys.stdout.flush()
@@ -130,7 +130,7 @@ def report(
     chosen = _configuration(config, changes)
     _check_writable(out, PAGE_SUFFIXES)
     trajectory = _simulated(chosen)
-    from app.report import report_page
+    from app.reports.run_report import report_page
     from model.files import write_whole
 
     page = report_page(trajectory, config).encode()
@@ -149,9 +149,9 @@ def paper(
     Exit status: 0 done; 2 bad folder, 3 a run diverged, 130 interrupted: nothing written.
     """
     _check_folder(out)
-    from app.paper import paper_files
+    from app.reports.paper.page import paper_files
     from model.files import write_whole
-    from model.paper_study import StudyError, study_paper
+    from model.paper.study import StudyError, study_paper
 
     with _progress("The paper's runs") as on_progress, _interrupt() as should_stop:
 
@@ -184,8 +184,8 @@ def _fail(message: str, status: int = BAD_INPUT) -> NoReturn:
 
 def _configuration(source: str, changes: list[str] | None) -> Config:
     """The configuration with the values of --set; leaves with all faults printed when there are any."""
-    from model.config import ConfigError, load_config, parse_value, read_profile
-    from model.parameters import PARAMETER
+    from model.config.config import ConfigError, load_config, parse_value, read_profile
+    from model.config.parameters import PARAMETER
 
     faults, values = [], {}
     for change in changes or []:
@@ -212,7 +212,7 @@ def _configuration(source: str, changes: list[str] | None) -> Config:
 def _simulated(config: Config) -> Trajectory:
     """The run, with a progress bar; Ctrl+C ends it early."""
     from model import simulate
-    from model.equilibrium import NoEquilibriumError
+    from model.dynamics.equilibrium import NoEquilibriumError
 
     try:
         with _progress(config.name) as on_progress, _interrupt() as should_stop:
@@ -297,7 +297,7 @@ def _interrupt() -> Iterator[Callable[[], bool]]:
 
 
 def _report(trajectory: Trajectory) -> None:
-    from model.ride import summary, warnings
+    from model.analysis.ride import summary, warnings
 
     figures = summary(trajectory)
     output.print(_load_table(figures))

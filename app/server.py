@@ -20,10 +20,10 @@ from typing import TYPE_CHECKING, Any
 import viser
 from rich.console import Console
 
-from model.config import Config, load_config, preset_names
+from model.config.config import Config, load_config, preset_names
 
 if TYPE_CHECKING:
-    from app.session import Session
+    from app.session.session import Session
 
 HOST, PORT = "127.0.0.1", 8080
 PORTS_TO_TRY = 100
@@ -93,7 +93,7 @@ class _Server(viser.ViserServer):
 
 @cache
 def _session_class() -> type[Session]:
-    from app.session import Session
+    from app.session.session import Session
 
     gc.freeze()  # all that has been imported stays: looking through it would hold up a drag for 100 ms
     return Session
@@ -102,12 +102,13 @@ def _session_class() -> type[Session]:
 def prepare() -> None:
     """Load what sessions need; the very first time, compile it."""
     _session_class()
-    from app import thinning, track
-    from assets import solids
-    from model.simulate import warm_up
+    from app.plots import thinning
+    from app.view3d import track_belt
+    from app.view3d.meshes import solids
+    from model.simulation.simulate import warm_up
 
     thinning.warm_up()
-    track.warm_up()
+    track_belt.warm_up()
     warm_up()
     solids.warm_up()
 

@@ -15,7 +15,15 @@ from typing import Any
 
 from numba import config, njit
 
-_KERNELS = ("compiled.py", "lanes.py", "road_search.py", "road_table.py", "contact.py", "kernel.py", "steppers.py")
+_KERNELS = (
+    "compiled.py",
+    "road/nearest_point.py",
+    "road/table.py",
+    "dynamics/lanes.py",
+    "dynamics/contact.py",
+    "dynamics/kernel.py",
+    "simulation/steppers.py",
+)
 _package = Path(__file__).parent
 
 if not config.CACHE_DIR:  # type: ignore[attr-defined]

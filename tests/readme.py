@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from model.errata import errata_list
-from model.parameters import parameter_table
+from model.config.parameters import parameter_table
+from model.paper.errata import errata_list
 
 ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "tests" / "benchmarks" / "results"

@@ -17,11 +17,11 @@ from websockets.exceptions import ConnectionClosedOK
 from websockets.sync.client import connect
 
 from app.server import Explorer
-from model.config import Config, load_config
-from model.ride import WheelState, wheel_state
-from model.road import Road
-from model.trajectory import RunStatistics, Trajectory
-from model.vehicle import build_system
+from model.analysis.ride import WheelState, wheel_state
+from model.config.config import Config, load_config
+from model.dynamics.vehicle import build_system
+from model.road.road import Road
+from model.simulation.trajectory import RunStatistics, Trajectory
 
 PATIENCE = 10.0  # s that a test waits for something to happen
 

@@ -18,8 +18,8 @@ import app.server
 import model
 from app import cli
 from model import Config, Trajectory, load_config
-from model.config import parse_config, preset_names
-from model.parameters import PARAMETER
+from model.config.config import parse_config, preset_names
+from model.config.parameters import PARAMETER
 
 SHORT = ("--set", "simulation.duration=1")
 

@@ -16,8 +16,8 @@ import viser
 
 import app.server
 from app.server import Explorer, ServerError, free_port, serve
-from model.config import load_config
-from model.trajectory import Trajectory
+from model.config.config import load_config
+from model.simulation.trajectory import Trajectory
 from tests.app.conftest import PATIENCE, Tab, simulate_at_once, trackride_threads, wait_for
 
 PAPER = load_config("paper")
@@ -127,7 +127,7 @@ def test_no_visitor_can_open_a_tunnel(explore: Any, open_tab: Any, monkeypatch: 
 
 def test_it_says_where_it_is_and_ends_on_interrupt(taken: int) -> None:
     code = (
-        "from model.config import load_config; from app.server import serve; "
+        "from model.config.config import load_config; from app.server import serve; "
         f"serve(load_config('paper'), 'paper', port={taken}, open_browser=False)"
     )
     with subprocess.Popen(
@@ -162,7 +162,9 @@ def test_the_browser_opens_the_address_in_use(monkeypatch: pytest.MonkeyPatch, t
 
 def test_nobody_waits_for_libraries_that_are_needed_later() -> None:
     """Not for Numba until it listens, not for solids and figures until the panels stand; pyplot is never loaded."""
-    code = "; ".join(f"import {module}; print(*sys.modules)" for module in ("app.server", "app.session", "app.figure"))
+    code = "; ".join(
+        f"import {module}; print(*sys.modules)" for module in ("app.server", "app.session.session", "app.reports.sheet")
+    )
     done = subprocess.run([sys.executable, "-c", f"import sys; {code}"], capture_output=True, text=True, check=True)
     to_listen, to_fill, to_draw = (set(line.split()) for line in done.stdout.splitlines())
     assert not to_listen & {"numba", "scipy"}

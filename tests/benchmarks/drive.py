@@ -17,10 +17,10 @@ from time import thread_time
 
 import numpy as np
 
-from app.driving import FRAME, Driver
+from app.runs.drive import FRAME, Driver
 from model import load_config
-from model.live_road import Shapes
-from model.road import Road, build_road
+from model.road.endless import Shapes
+from model.road.road import Road, build_road
 
 HOUR = 3600.0  # s
 SPEED = 8.0  # times real time

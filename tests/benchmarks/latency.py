@@ -16,14 +16,14 @@ from typing import Any
 import numpy as np
 import viser
 
-from app.runner import Finished
+from app.runs.runner import Finished
 from app.server import Explorer as Server
-from app.session import Session
-from app.stage import Stage
-from app.window import Window
+from app.session.session import Session
+from app.session.window import Window
+from app.view3d.view import Stage
 from model import load_config, simulate
-from model.config import Config
-from model.trajectory import Trajectory
+from model.config.config import Config
+from model.simulation.trajectory import Trajectory
 from tests.browser.driver import Explorer, chromium
 
 PRESSES = 60

@@ -12,14 +12,14 @@ from scipy.integrate import solve_ivp
 
 from model import load_config, simulate
 from model.compiled import compiled
-from model.config import Config
-from model.equations import State, rates
-from model.integrate import error_scale
-from model.kernel import rates as kernel_rates
-from model.lanes import in_lanes, make_work, pack, places, unpack
-from model.road import build_road
-from model.simulate import starting_state
-from model.vehicle import build_system
+from model.config.config import Config
+from model.dynamics.equations import State, rates
+from model.dynamics.kernel import rates as kernel_rates
+from model.dynamics.lanes import in_lanes, make_work, pack, places, unpack
+from model.dynamics.vehicle import build_system
+from model.road.road import build_road
+from model.simulation.integrate import error_scale
+from model.simulation.simulate import starting_state
 
 REPEATS = 15
 ROAD_REPEATS = 25

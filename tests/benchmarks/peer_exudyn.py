@@ -12,7 +12,7 @@ from io import StringIO
 
 import numpy as np
 
-from model.vehicle import GRAVITY
+from model.dynamics.vehicle import GRAVITY
 from tests.benchmarks.peer_task import Task
 
 

@@ -10,7 +10,7 @@ from xml.etree.ElementTree import Element, SubElement, tostring
 
 import numpy as np
 
-from model.vehicle import GRAVITY, System
+from model.dynamics.vehicle import GRAVITY, System
 from tests.benchmarks.peer_task import Task
 
 IMPEDANCE = 0.005  # MuJoCo's d of an untouched contact: so small that a contact is a spring and hardly a mass

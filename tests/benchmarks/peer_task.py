@@ -6,9 +6,9 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from model.road import build_road
-from model.trajectory import Trajectory
-from model.vehicle import System
+from model.dynamics.vehicle import System
+from model.road.road import build_road
+from model.simulation.trajectory import Trajectory
 
 PIECE = 0.2  # m: neither engine takes the sine itself; pieces of 0.35 m tear at the loads
 

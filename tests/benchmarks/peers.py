@@ -16,7 +16,7 @@ from time import perf_counter
 import numpy as np
 
 from model import load_config, simulate
-from model.trajectory import Trajectory
+from model.simulation.trajectory import Trajectory
 from tests.benchmarks.peer_exudyn import ExudynPeer
 from tests.benchmarks.peer_mujoco import MujocoPeer
 from tests.benchmarks.peer_task import Peer, Task, task_of

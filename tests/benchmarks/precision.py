@@ -10,8 +10,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from model import load_config, simulate
-from model.config import Config
-from model.trajectory import Trajectory
+from model.config.config import Config
+from model.simulation.trajectory import Trajectory
 
 PICTURE = Path(__file__).parents[2] / "assets" / "pictures" / "precision.png"
 TOLERANCES = {  # of each stepper, with how often a run is timed

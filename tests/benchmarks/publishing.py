@@ -13,13 +13,13 @@ from functools import cache
 from statistics import median, quantiles
 from typing import Any
 
-from app.plot_panel import PlotPanel
+from app.panels.plot_panel import PlotPanel
 from app.server import Explorer
-from app.session import Session
-from app.stage import Stage
+from app.session.session import Session
+from app.view3d.view import Stage
 from model import load_config, simulate
-from model.config import Config
-from model.trajectory import Trajectory
+from model.config.config import Config
+from model.simulation.trajectory import Trajectory
 from tests.app.conftest import Tab, wait_for
 
 RUNS = 60

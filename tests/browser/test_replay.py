@@ -11,8 +11,8 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Browser, Page
 
-from app.replay import RATE, replay_html
-from assets.hull import PAINT
+from app.files.replay import RATE, replay_html
+from app.view3d.meshes.hull import PAINT
 from model import load_config, simulate
 from tests.browser.driver import DRAWING, SOON
 

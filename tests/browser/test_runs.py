@@ -9,10 +9,10 @@ from pathlib import Path
 from PIL import Image
 from playwright.sync_api import Download, expect
 
-from app.comparison import change_text, row_texts
+from app.tabs.comparison import change_text, row_texts
 from model import load_config, simulate
-from model.ride import AIR_TIME, comparison
-from model.trajectory import Trajectory
+from model.analysis.ride import AIR_TIME, comparison
+from model.simulation.trajectory import Trajectory
 from tests.browser.driver import DOWNLOAD, Explorer
 
 DAMPING = "vehicle.road_suspension.damping"

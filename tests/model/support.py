@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from model.config import Config
-from model.equations import State
-from model.equilibrium import rest_pose
-from model.lanes import COORDINATES, places
-from model.vehicle import System
+from model.config.config import Config
+from model.dynamics.equations import State
+from model.dynamics.equilibrium import rest_pose
+from model.dynamics.lanes import COORDINATES, places
+from model.dynamics.vehicle import System
 
 PAPER = Config()
 FLAT = PAPER.replace({"road.type": "flat"})

@@ -1,0 +1,1 @@
+"""What users take home and bring along: pictures, films, replays, uploads."""

@@ -1,0 +1,130 @@
+"""What users take home: file names, and pictures as PNG."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, Protocol
+
+import numpy as np
+from PIL import Image
+
+from app.panels.controls import shown_text
+from model.config.config import Config
+
+SIZES = {
+    "1280 × 720": (1280, 720),
+    "1920 × 1080": (1920, 1080),
+    "2560 × 1440": (2560, 1440),
+    "3840 × 2160": (3840, 2160),
+}
+FIGURE_SIZE = (1600, 900)  # px of the picture in a figure
+MOVIE_SIZE = (1280, 720)  # px
+MOVIE_RATE = 20.0  # frames a second
+MOVIE_LENGTH = 4.0  # s at most
+RENDER_TIMEOUT = 20.0  # s; a hidden tab never answers
+NAME_LIMIT = 120  # characters of a file's name before its suffix
+
+
+class View(Protocol):
+    """Where the user looks from: viser's camera."""
+
+    @property
+    def wxyz(self) -> np.ndarray: ...
+
+    @property
+    def position(self) -> np.ndarray: ...
+
+    @property
+    def fov(self) -> float: ...
+
+    @property
+    def aspect(self) -> float: ...
+
+
+class Camera(Protocol):
+    """The browser's side of a screenshot: viser's ClientHandle."""
+
+    @property
+    def camera(self) -> View: ...
+
+    def get_render(
+        self, height: int, width: int, *, wxyz: Any, position: Any, fov: float, transport_format: Any, timeout: Any
+    ) -> np.ndarray: ...
+
+
+class NoPictureError(Exception):
+    """The browser sent no picture; the message says why and what to do."""
+
+
+def take_picture(camera: Camera, width: int, height: int, background: str | None) -> bytes:
+    """PNG of the 3-D view, width × height pixels; without a background (CSS colour) it is transparent where there is
+    nothing. Waits for the browser.
+
+    Raises NoPictureError when the tab is hidden, closed or cannot render so large a picture.
+    """
+    picture = Image.fromarray(_render(camera, width, height, "png"))
+    if picture.mode == "RGBA" and background is not None:
+        opaque = Image.new("RGBA", picture.size, background)
+        picture = Image.alpha_composite(opaque, picture).convert("RGB")
+    file = io.BytesIO()
+    picture.save(file, "PNG")
+    return file.getvalue()
+
+
+def movie_frames(camera: Camera, seek: Callable[[float], None], start: float, end: float) -> Iterator[np.ndarray]:
+    """Pixels (H, W, 3) of each frame from `start` to `end`, s of the run; `seek` shows a time. Waits for the browser.
+
+    Raises NoPictureError like take_picture.
+    """
+    for frame in range(round((end - start) * MOVIE_RATE)):
+        seek(start + frame / MOVIE_RATE)
+        yield _render(camera, *MOVIE_SIZE, "jpeg")
+
+
+def framed(fov: float, page_aspect: float, picture_aspect: float) -> float:
+    """Vertical field of view, rad, with which a picture shows from left to right what the page shows.
+
+    fov: the page's; aspects: width by height.
+    """
+    return float(2 * np.arctan(np.tan(fov / 2) * page_aspect / picture_aspect))
+
+
+def _render(camera: Camera, width: int, height: int, kind: str) -> np.ndarray:
+    view = camera.camera
+    try:
+        return camera.get_render(
+            height,
+            width,
+            wxyz=view.wxyz,
+            position=view.position,
+            fov=framed(view.fov, view.aspect, width / height),
+            transport_format=kind,
+            timeout=RENDER_TIMEOUT,
+        )
+    except TimeoutError as error:
+        raise NoPictureError(
+            "The browser sent no picture. Keep the tab in front until the picture is done, and try again."
+        ) from error
+    except RuntimeError as error:
+        raise NoPictureError("The browser could not draw the picture. Try a smaller size.") from error
+
+
+def file_name(config: Config, title: str, changes: Mapping[str, Any], detail: str, suffix: str) -> str:
+    """A safe name: what was run, what was changed, what is in it: "paper-vehicle_speed-22-km-h_1280x720.png".
+
+    config: with the changes, for their units.
+    """
+    parts = [_plain(title) or "run"]
+    for key, value in changes.items():
+        parameter = config.parameter(key)
+        text = str(value) if value is None or parameter.kind == "choice" else shown_text(parameter, value)
+        parts.append(_plain(f"{parameter.label} {text} {parameter.shown_unit}"))
+    end = f"_{_plain(detail)}" if detail else ""
+    return "_".join(part for part in parts if part)[: NAME_LIMIT - len(end)].rstrip("-_.") + end + suffix
+
+
+def _plain(text: str) -> str:
+    """Small letters, digits, hyphens and decimal points; nothing that a file system could take amiss."""
+    return re.sub(r"(?<!\d)\.|\.(?!\d)|[^a-z0-9.]+", "-", text.lower()).strip("-")

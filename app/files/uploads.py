@@ -1,0 +1,60 @@
+"""What users bring along: configurations and runs, from files of any content. Pure."""
+
+from __future__ import annotations
+
+from io import BytesIO
+from typing import Any
+from zipfile import BadZipFile, ZipFile
+
+from model.config.config import SIZE_LIMIT, Config, ConfigError, Fault, parse_config
+from model.config.profile_points import PointsError, read_csv
+from model.road.road import RAMP_AHEAD
+from model.simulation.trajectory import Trajectory
+
+RUN_LIMIT = 100e6  # bytes of a run's file…
+UNPACKED_LIMIT = 500e6  # … and of what is in it
+
+
+def configuration(name: str, content: bytes) -> Config:
+    """What a YAML file says. Raises ConfigError with all faults."""
+    if len(content) > SIZE_LIMIT:
+        raise ConfigError([Fault("", "", f"the file is larger than {SIZE_LIMIT} bytes")], name)
+    try:
+        return parse_config(content.decode("utf-8-sig"), source=name)
+    except UnicodeDecodeError:
+        raise ConfigError([Fault("", "", "the file is not UTF-8 text")], name) from None
+
+
+def profile_changes(name: str, content: bytes, config: Config) -> dict[str, Any]:
+    """Changes (dotted key -> value) that make a CSV file's profile the road. Raises ConfigError with all faults.
+
+    A profile that is not level under the vehicle is put ahead of it.
+    """
+    try:
+        points = read_csv(content)
+    except PointsError as error:
+        raise ConfigError([Fault("", "", str(error))], name) from None
+    changes: dict[str, Any] = {"road.type": "profile", "road.file": name, "road.points": points}
+    try:
+        config.replace(changes)
+    except ConfigError:
+        changes["road.start"] = round(config.vehicle.road_wheels.x[0] + RAMP_AHEAD, 6)
+        config.replace(changes)
+    return changes
+
+
+def run_from(name: str, content: bytes) -> Trajectory:
+    """The run in a .npz file. Raises ValueError (the message says why), or ConfigError for its configuration."""
+    if len(content) > RUN_LIMIT:
+        raise ValueError(f"{name} is larger than {RUN_LIMIT / 1e6:.0f} MB.")
+    try:
+        with ZipFile(BytesIO(content)) as archive:
+            unpacked = sum(entry.file_size for entry in archive.infolist())
+        if unpacked > UNPACKED_LIMIT:
+            raise ValueError(f"{name} holds more than {UNPACKED_LIMIT / 1e6:.0f} MB.")
+        run = Trajectory.load(BytesIO(content), name)
+    except (BadZipFile, MemoryError, OSError) as error:
+        raise ValueError(f"{name} is not a run: give a file saved with NPZ here, or by trackride run --out.") from error
+    if not len(run.t):
+        raise ValueError(f"{name} holds a run without any sample.")
+    return run

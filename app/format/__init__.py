@@ -1,0 +1,1 @@
+"""How values, names, colours and HTML are written; no viser."""

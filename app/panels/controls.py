@@ -1,0 +1,257 @@
+"""Sliders and boxes for single parameters, as the parameter table describes them.
+
+What a box shows is in the table's friendlier unit (`shown_unit`); what a wish holds is as in a file.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Protocol
+
+import numpy as np
+import viser
+
+from app.panels.callbacks import by_user
+from model.config.config import Config
+from model.config.parameters import PARAMETER, Parameter, number_text
+from model.config.profile_points import points
+from model.config.validation import Fault
+
+PRECISION = 4  # decimals that a box takes and shows
+FINEST_STEP = 10**-PRECISION  # parameters that need finer ones are typed as text: 1e-6
+ONE_EACH = " Here one for each road wheel, front first."
+IMAGINARY = "vehicle.imaginary_"
+IMAGINARY_SWITCH = "vehicle.imaginary_wheels.enabled"
+
+
+class Wishes(Protocol):
+    """What the panel asks of the session. Nothing of it blocks."""
+
+    def change(self, key: str, value: Any) -> None: ...
+
+    def load(self, preset: str) -> None: ...
+
+    def reset(self) -> None: ...
+
+    def undo(self) -> None: ...
+
+    def redo(self) -> None: ...
+
+    def upload_profile(self, name: str, content: bytes) -> None: ...
+
+    def add_to_road(self, road_type: str) -> None: ...
+
+    def take_from_road(self) -> None: ...
+
+    def fail(self, error: Exception) -> None: ...
+
+
+# What a box shows, and back
+
+
+def shown_label(parameter: Parameter) -> str:
+    """Name and unit: "Road stiffness, kN/m", the unit in one piece."""
+    unit = parameter.shown_unit.replace(" ", "\u00a0")
+    return f"{parameter.label}, {unit}" if unit else parameter.label
+
+
+def hint(parameter: Parameter) -> str:
+    """What it is, what happens when it grows, and where it stands in the paper."""
+    parts = [_in_words(parameter)]
+    if parameter.growth:
+        parts.append(f"When it grows: {parameter.growth[0].lower()}{parameter.growth[1:]}")
+    if parameter.per_wheel:
+        parts.append("One value for all road wheels.")
+    facts = [f"Symbol {parameter.symbol}"] if parameter.symbol else []
+    facts += [f"unit {parameter.shown_unit}"] if parameter.shown_unit else []
+    facts += [f"from {parameter.source}"] if parameter.source.startswith(("Table", "section")) else []
+    return " ".join(parts) + (f" ({', '.join(facts)})" if facts else "")
+
+
+def _in_words(parameter: Parameter) -> str:
+    """The description as it reads beside a box: what is left out of a file is an empty box, choices are words."""
+    text = parameter.description.replace("Left out:", "Empty:").replace("left out:", "empty:")
+    for choice in parameter.choices:
+        text = text.replace(choice, choice_words(choice))
+    return text
+
+
+def allowed(parameter: Parameter) -> str:
+    """Range and unit as shown: "0.5 to 100 km/h"."""
+    if parameter.kind == "choice":
+        return "one of " + ", ".join(map(choice_words, parameter.choices))
+    if parameter.kind in ("points", "parts"):
+        return parameter.allowed
+    low, high = (number_text(shown_number(parameter, bound)) for bound in (parameter.low, parameter.high))
+    return f"{low} to {high} {parameter.shown_unit}".strip()
+
+
+def shown_number(parameter: Parameter, value: float) -> float:
+    """A file's value in the shown unit, free of rounding noise."""
+    return float(f"{value * parameter.shown_factor:.10g}")
+
+
+def file_number(parameter: Parameter, shown: float) -> float | int:
+    """A shown value in the file's unit, free of rounding noise; whole where the parameter is."""
+    value = float(f"{shown / parameter.shown_factor:.10g}")
+    return int(value) if parameter.kind == "integer" and value.is_integer() else value
+
+
+def shown_text(parameter: Parameter, value: Any) -> str:
+    """A value, a list of values or nothing as text in the shown unit; of a profile and of a sum, what they hold."""
+    if value is None:
+        return ""
+    if parameter.kind == "points":
+        x, y = points(value)
+        return f"{len(x)} points, {x[-1] - x[0]:.4g} m long, {np.ptp(y):.3g} m high"
+    if parameter.kind == "parts":
+        return " + ".join(choice_words(road.type) for road in value) or "none"
+    if isinstance(value, str):
+        return value
+    if isinstance(value, tuple):
+        return ", ".join(number_text(shown_number(parameter, number)) for number in value)
+    return number_text(shown_number(parameter, value))
+
+
+def file_value(parameter: Parameter, text: str) -> Any:
+    """What a typed text means; the text itself where it means nothing, for the configuration to refuse."""
+    if not text.strip():
+        return None
+    try:
+        numbers = tuple(float(part) for part in text.strip(" ,;[]()").replace(";", ",").split(","))
+    except ValueError:
+        return text
+    values = tuple(file_number(parameter, number) for number in numbers)
+    return values if parameter.kind == "list" or len(values) > 1 else values[0]
+
+
+def choice_words(choice: str) -> str:
+    """A choice as people write it: "half round"."""
+    return choice.replace("_", " ")
+
+
+def _typed(parameter: Parameter) -> bool:
+    """Whether it is typed as text: it may be left out, is a list, or goes over many powers of ten."""
+    return parameter.optional or parameter.kind == "list" or 0 < parameter.step < FINEST_STEP
+
+
+def _decimals(value: float) -> int:
+    text = f"{value:.10f}".rstrip("0")
+    return len(text.partition(".")[2])
+
+
+class Control:
+    """Slider or box of one parameter. A parameter for each wheel has two: for one value, and for a list."""
+
+    def __init__(self, gui: viser.GuiApi, parameter: Parameter, value: Any, wishes: Wishes) -> None:
+        self.parameter = parameter
+        label, help_text = shown_label(parameter), hint(parameter)
+        self._list: Any = None
+        if _typed(parameter):
+            self._one: Any = gui.add_text(label, shown_text(parameter, value), hint=help_text)
+        elif parameter.kind == "choice":
+            self._one = gui.add_dropdown(
+                label, tuple(map(choice_words, parameter.choices)), initial_value=choice_words(value), hint=help_text
+            )
+        elif parameter.kind == "flag":
+            self._one = gui.add_checkbox(label, value, hint=help_text)
+        else:
+            first = shown_number(parameter, value[0] if isinstance(value, tuple) else value)
+            if parameter.what_if:
+                low, high, step = self._range(first)
+                self._one = gui.add_slider(label, min(low, first), max(high, first), step, first, hint=help_text)
+            else:
+                step = shown_number(parameter, parameter.step)
+                self._one = gui.add_number(label, float(first), step=float(step), hint=help_text)
+            self._one.precision = max(PRECISION, _decimals(first))
+        self._one.on_update(by_user(lambda event: wishes.change(parameter.key, self.value), wishes.fail))
+        if parameter.per_wheel:
+            self._list = gui.add_text(label, "", hint=help_text + ONE_EACH)
+            self._list.on_update(by_user(lambda event: wishes.change(parameter.key, self.listed_value), wishes.fail))
+            self.show(value)
+
+    @property
+    def value(self) -> Any:
+        """What the slider or box says, as in a file."""
+        shown = self._one.value
+        if isinstance(shown, str) and self.parameter.kind == "choice":
+            return next((choice for choice in self.parameter.choices if choice_words(choice) == shown), shown)
+        if isinstance(shown, str):
+            return file_value(self.parameter, shown)
+        return shown if isinstance(shown, bool) else file_number(self.parameter, shown)
+
+    @property
+    def listed_value(self) -> Any:
+        """What the box for a list says."""
+        return None if self._list is None else file_value(self.parameter, self._list.value)
+
+    def was_moved_to_end(self, wished: Any) -> bool:
+        """Whether the slider stands at its end because the page moved it there from the value wished for, beyond it."""
+        if not self.parameter.what_if or not isinstance(wished, int | float):
+            return False
+        value, shown = self._one.value, shown_number(self.parameter, wished)
+        return value == self._one.max < shown or value == self._one.min > shown
+
+    def show(self, value: Any) -> None:
+        """Say this value, unless the control means it already."""
+        as_list = isinstance(value, tuple) and self._list is not None
+        if self._list is not None:
+            self._list.visible, self._one.visible = as_list, not as_list
+            if as_list and self.listed_value != value:
+                self._list.value = shown_text(self.parameter, value)
+        if as_list or self.value == value:
+            return
+        if _typed(self.parameter):
+            self._one.value = shown_text(self.parameter, value)
+        elif isinstance(value, str):
+            self._one.value = choice_words(value)
+        elif isinstance(value, bool):
+            self._one.value = value
+        else:
+            shown = shown_number(self.parameter, value)
+            self._one.precision = max(PRECISION, _decimals(shown))
+            if self.parameter.what_if and not self._one.min <= shown <= self._one.max:
+                self._one.min, self._one.max, self._one.step = self._range(shown)
+            self.widen(value)
+            self._one.value = shown
+
+    def _range(self, shown: float) -> tuple[float, float, float]:
+        """Ends and step of the slider for a value, as shown."""
+        low, high, step = self.parameter.slider(file_number(self.parameter, shown))
+        return tuple(float(shown_number(self.parameter, bound)) for bound in (low, high, step))  # type: ignore[return-value]
+
+    def widen(self, value: Any) -> None:
+        """Give the slider a range that has this value."""
+        if self.parameter.what_if and not isinstance(value, tuple):
+            shown = shown_number(self.parameter, value)
+            self._one.min, self._one.max = min(self._one.min, shown), max(self._one.max, shown)
+
+    def describe(self, parameter: Parameter) -> None:
+        """Say the same parameter in another unit."""
+        if parameter != self.parameter:
+            self.parameter = parameter
+            self._one.label, self._one.hint = shown_label(parameter), hint(parameter)
+            if self._list is not None:
+                self._list.label, self._list.hint = shown_label(parameter), hint(parameter) + ONE_EACH
+
+    def enable(self, applies: bool) -> None:
+        """Let it be used, or show that it means nothing at present: a slider turns grey, a box of a road goes."""
+        if self.parameter.roads and not self.parameter.what_if:
+            self._one.visible = applies
+        else:
+            self._one.disabled = not applies
+
+
+def refusal(fault: Fault, given: Any, config: Config) -> str:
+    """A fault in the words of the panel, and in the units that the configuration gives it."""
+    if fault.path not in PARAMETER:
+        return f"{fault}."
+    parameter = config.parameter(fault.path)
+    if parameter.kind in ("points", "parts"):
+        return f"{parameter.label}: {fault.message}."
+    if not isinstance(given, int | float) or not math.isfinite(given):
+        return f"{parameter.label}: {fault.value} is not allowed. Give {allowed(parameter)}."
+    if parameter.low <= given <= parameter.high:
+        return f"{parameter.label}: {fault.message}."
+    what = f"{shown_text(parameter, given)} {parameter.shown_unit}".strip()
+    return f"{parameter.label}: {what} is not allowed. Give {allowed(parameter)}."

@@ -1,0 +1,120 @@
+"""The panel of parameters, generated from the parameter table: sliders for what-if, boxes in folders for the rest."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from operator import attrgetter
+from typing import Any
+
+import viser
+
+from app.panels.callbacks import by_user
+from app.panels.controls import IMAGINARY, IMAGINARY_SWITCH, Control, Wishes
+from app.panels.road_controls import PartsControl, ProfileControl
+from model.config.config import Config
+from model.config.parameters import GROUPS, NOTES, PARAMETERS, ROAD, Parameter
+
+SECTION_OF = {parameter.key: parameter.key.rpartition(".")[0] for parameter in PARAMETERS}
+SECTIONS = {name: attrgetter(name) for name in SECTION_OF.values() if name}
+BOXED = tuple(p for p in PARAMETERS if not p.what_if and p.group != NOTES and p.kind != "text")  # in folders
+KINDS: dict[str, Any] = {"points": ProfileControl, "parts": PartsControl}  # that have controls of their own
+
+
+class ControlPanel:
+    """All controls of one browser tab, in the present container of `gui`; those in folders once `fill` is called."""
+
+    def __init__(
+        self, gui: viser.GuiApi, presets: Mapping[str, Config], preset: str, config: Config, wishes: Wishes
+    ) -> None:
+        """presets: name -> configuration; `preset` is shown as the chosen one, `config` in the controls."""
+        self._gui, self._wishes = gui, wishes
+        self._titles = _unique_titles(presets)
+        self._preset: Any = gui.add_dropdown(
+            "Preset",
+            tuple(self._titles.values()),
+            initial_value=self._titles[preset],
+            hint="A vehicle on a road to start from; all parameters follow",
+        )
+        self._preset.on_update(by_user(lambda event: wishes.load(self._named(event.target.value)), wishes.fail))
+        self.status = gui.add_html("")
+        self._controls: dict[str, Control] = {}
+        for parameter in PARAMETERS:
+            if parameter.what_if:
+                self._controls[parameter.key] = Control(gui, parameter, _value(config, parameter), wishes)
+        steps = gui.add_button_group(
+            "Parameters",
+            ("Undo", "Redo", "Reset"),
+            hint="Undo the last change (Ctrl+Z), redo it (Ctrl+Shift+Z), or all parameters as in the preset (R)",
+        )
+        acts = {"Undo": wishes.undo, "Redo": wishes.redo, "Reset": wishes.reset}
+        steps.on_click(by_user(lambda event: acts[event.target.value](), wishes.fail))
+        self._shown = config
+        self.middle = gui.add_folder(None)  # for other controls, between the sliders and the folders
+        groups = {parameter.group for parameter in BOXED}
+        self._folders = {group: gui.add_folder(group, expand_by_default=False) for group in GROUPS if group in groups}
+        with self._folders[ROAD]:
+            self.road_view = gui.add_html("")  # for others to fill
+        self.show(config)
+
+    def fill(self) -> None:
+        """Fill the folders, which are closed at first. What stands already may have been moved since: it is left."""
+        for parameter in BOXED:
+            make, value = KINDS.get(parameter.kind, Control), _value(self._shown, parameter)
+            with self._folders[parameter.group]:
+                self._controls[parameter.key] = control = make(self._gui, parameter, value, self._wishes)
+            _say(control, self._shown)
+
+    def offer(self, presets: Mapping[str, Config], chosen: str) -> None:
+        """Offer these presets, `chosen` as the one that is used."""
+        titles = _unique_titles(presets)
+        if titles != self._titles:
+            self._titles = titles
+            self._preset.options = tuple(titles.values())
+        if self._preset.value != titles[chosen]:
+            self._preset.value = titles[chosen]
+
+    def _named(self, title: str) -> str:
+        """The name of the preset with this title. Raises KeyError."""
+        names = {title: name for name, title in self._titles.items()}
+        return names[title]
+
+    def __getitem__(self, key: str) -> Control:
+        return self._controls[key]
+
+    def show(self, config: Config, touched: Collection[str] = ()) -> None:
+        """Say what the configuration says, but leave controls alone that the user has touched and may still move.
+
+        While the user moves some, only sections of the configuration are looked at in which something has changed: no
+        other control can say anything else.
+        """
+        before, self._shown = self._shown, config
+        others = {name for name, section in SECTIONS.items() if section(before) == section(config)} if touched else ()
+        if before.vehicle.imaginary_wheels.enabled != config.vehicle.imaginary_wheels.enabled:
+            others = ()
+        for key, control in self._controls.items():
+            if SECTION_OF[key] not in others:
+                _say(control, config, touched=key in touched)
+
+
+def _say(control: Control, config: Config, *, touched: bool = False) -> None:
+    """What the configuration says of a control's parameter; its value not where the user may still move it."""
+    key = control.parameter.key
+    applies = control.parameter.applies_to(config.road.type)
+    control.describe(config.parameter(key))
+    if applies:
+        (control.widen if touched else control.show)(config.value(key))
+    with_track = config.vehicle.imaginary_wheels.enabled
+    control.enable(applies and (with_track or not key.startswith(IMAGINARY) or key == IMAGINARY_SWITCH))
+
+
+def _value(config: Config, parameter: Parameter) -> Any:
+    return config.value(parameter.key) if parameter.applies_to(config.road.type) else parameter.default
+
+
+def _unique_titles(presets: Mapping[str, Config]) -> dict[str, str]:
+    """Preset's name -> its title, with the name where two have the same title."""
+    titles = [config.name for config in presets.values()]
+    return {
+        name: config.name if titles.count(config.name) == 1 else f"{config.name} ({name})"
+        for name, config in presets.items()
+    }

@@ -1,0 +1,137 @@
+"""The player at the foot of the 3-D view: run or drive, time slider or how far the drive has come, buttons, speed."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import viser
+
+from app.panels.callbacks import by_user
+from app.runs.drive import DriveState
+from app.runs.playback import NORMAL_SPEED, SPEEDS, STEP, Playback
+
+HEIGHT = 172  # px
+ONE_ROW, ROW = 390, 27  # px: on a panel less wide the buttons take a second row, of this height
+GAP = 14  # px to the lower edge of the view
+START, BACK, PLAY, PAUSE, ON = "|◀", "◀ Step", "▶ Play", "❚❚ Pause", "Step ▶"
+ANEW, GO = "|◀ Restart", "▶ Drive on"
+RUN, DRIVE = "Run", "Drive"
+MARKS = {True: "●", False: "○"}  # before the mode that is on, and the other
+
+# As tall as the box of text that takes its place in a drive: the rows below stay where they are.
+AS_TALL = '<style>[id="TIME"] { min-height: 1.62rem; }</style>'
+
+
+class Player(Protocol):
+    """What the panel asks of the session."""
+
+    def toggle(self) -> None: ...
+
+    def step(self, steps: int) -> None: ...
+
+    def scrub(self, time: float) -> None: ...
+
+    def set_speed(self, speed: float) -> None: ...
+
+    def set_driving(self, on: bool) -> None: ...
+
+    def restart_drive(self) -> None: ...
+
+    def fail(self, error: Exception) -> None: ...
+
+
+class PlaybackPanel:
+    """A floating panel that shows a Playback or a drive, and passes on what the user wants of it."""
+
+    def __init__(self, gui: viser.GuiApi, player: Player) -> None:
+        self._panel = gui.add_panel()
+        with self._panel.add_tab("Playback"):
+            self._mode: Any = gui.add_button_group(
+                "Mode",
+                _modes(False),
+                hint="Run: a fixed stretch of road, computed anew at each change. Drive (D): on and on in real time; "
+                "changes act on the moving vehicle, and an obstacle comes again and again.",
+            )
+            self._time: Any = gui.add_slider(
+                "Time, s", 0.0, 1.0, STEP, 0.0, hint="Where in the run, or in the last seconds of the drive, we are"
+            )
+            self._driven: Any = gui.add_text(
+                "Driven",
+                "",
+                disabled=True,
+                visible=False,
+                hint="Time and distance since the start, and how fast the drive is compared with real time: what this "
+                "machine reaches may be less than what is asked for.",
+            )
+            self._buttons: Any = gui.add_button_group(
+                "Playback",
+                _buttons(False, True),
+                hint="Space plays and pauses; ← and → step by 0.01 s, with Shift by 0.1 s. A drive that pauses can be "
+                "looked back on for its last seconds.",
+            )
+            speed = gui.add_dropdown(
+                "Time scale",
+                tuple(SPEEDS),
+                initial_value=NORMAL_SPEED,
+                hint="How fast time passes; 1× is real time. A larger one shows more in less time, up to what this "
+                "machine can compute.",
+            )
+            gui.add_html(AS_TALL.replace("TIME", self._time._impl.uuid))
+        self._time.on_update(by_user(lambda event: player.scrub(event.target.value), player.fail))
+        speed.on_update(by_user(lambda event: player.set_speed(SPEEDS[event.target.value]), player.fail))
+        acts = {
+            START: lambda: player.scrub(0.0),
+            BACK: lambda: player.step(-1),
+            ON: lambda: player.step(1),
+            ANEW: player.restart_drive,
+        } | dict.fromkeys((PLAY, PAUSE, GO), player.toggle)
+        self._buttons.on_click(by_user(lambda event: acts[event.target.value](), player.fail))
+        self._mode.on_click(by_user(lambda event: player.set_driving(event.target.value.endswith(DRIVE)), player.fail))
+
+    def place(self, x: int, width: int) -> None:
+        """Float at the foot of the view, px from its left edge."""
+        height = HEIGHT if width >= ONE_ROW else HEIGHT + ROW
+        self._panel.float(x=x, y=-GAP, width=width, height=height)
+
+    def show(self, playback: Playback) -> None:
+        """Say what the playback of a run does."""
+        self._show_mode(False, playback.playing)
+        self._show_time(playback)
+
+    def show_drive(self, playback: Playback, state: DriveState | None) -> None:
+        """Say how far the drive has come, or where in its past the user is."""
+        self._show_mode(True, playback.playing)
+        self._driven.value = "starting…" if state is None else driven_text(state, playback)
+        if state is not None and state.stands:
+            self._show_time(playback)
+
+    def _show_time(self, playback: Playback) -> None:
+        start, slider = round(playback.start, 2), self._time
+        end = max(round(playback.end, 2), start + STEP)
+        slider.min, slider.max = min(slider.min, start), max(slider.max, end)
+        slider.value = min(max(round(playback.time, 2), start), end)  # never outside: the page would move it back
+        slider.min, slider.max = start, end
+
+    def _show_mode(self, driving: bool, playing: bool) -> None:
+        self._mode.options = _modes(driving)
+        goes_on = driving and playing
+        self._time.visible, self._driven.visible = not goes_on, goes_on
+        self._buttons.options = _buttons(driving, playing)
+
+
+def driven_text(state: DriveState, playback: Playback) -> str:
+    """ "1:23 · 347 m · 0.99× of 1× real time"."""
+    minutes, seconds = divmod(int(state.time), 60)
+    where = f"{minutes}:{seconds:02d} · {state.distance:.0f} m"
+    asked = f"{playback.speed:g}× real time"
+    if state.ended:
+        return f"{where} · ended"
+    return f"{where} · {asked}" if state.factor is None else f"{where} · {state.factor:.2f}× of {asked}"
+
+
+def _buttons(driving: bool, playing: bool) -> tuple[str, ...]:
+    return ANEW if driving else START, BACK, PAUSE if playing else GO if driving else PLAY, ON
+
+
+def _modes(driving: bool) -> tuple[str, ...]:
+    return f"{MARKS[not driving]} {RUN}", f"{MARKS[driving]} {DRIVE}"

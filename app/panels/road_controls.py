@@ -1,0 +1,97 @@
+"""Controls of the roads that are no number: a measured profile, and the parts of a sum.
+
+They can be used as app.panels.controls.Control is.
+"""
+
+from __future__ import annotations
+
+import html
+from typing import Any
+
+import viser
+
+from app.panels.callbacks import by_user
+from app.panels.controls import Wishes, choice_words, hint, shown_text
+from app.panels.road_parts import ADDED, parts_from, parts_text
+from model.config.parameters import Parameter
+
+EXTENT = "trackride-extent"
+
+
+class RoadControl:
+    """What both have in common: nothing that slides."""
+
+    listed_value = None
+
+    def __init__(self, parameter: Parameter, value: Any) -> None:
+        self.parameter, self.value = parameter, value
+
+    def was_moved_to_end(self, wished: Any) -> bool:
+        return False
+
+    def widen(self, value: Any) -> None:
+        """Nothing: there is no range."""
+
+    def describe(self, parameter: Parameter) -> None:
+        """Nothing: there is one unit."""
+
+
+class ProfileControl(RoadControl):
+    """A button that takes a CSV file, and what there is of points."""
+
+    def __init__(self, gui: viser.GuiApi, parameter: Parameter, value: Any, wishes: Wishes) -> None:
+        super().__init__(parameter, value)
+        self._upload = gui.add_upload_button(
+            "Open a profile",
+            mime_type=".csv,.txt,.tsv",
+            hint="A CSV file with two columns, x and y in m, x growing; it becomes the road. If it is not level under "
+            "the vehicle, it is put 1 m ahead of the first wheel.",
+        )
+        self._extent = gui.add_html("")
+        file = self._upload
+        file.on_upload(by_user(lambda event: wishes.upload_profile(file.value.name, file.value.content), wishes.fail))
+
+    def show(self, value: Any) -> None:
+        self.value = value
+        extent = f'<div class="{EXTENT}">{html.escape(shown_text(self.parameter, value))}</div>'
+        if self._extent.content != extent:
+            self._extent.content = extent
+
+    def enable(self, applies: bool) -> None:
+        """The extent comes and goes with the road; a profile can be opened on any."""
+        self._extent.visible = applies
+
+
+class PartsControl(RoadControl):
+    """The list of parts as text, and buttons that add to any road or take from it."""
+
+    def __init__(self, gui: viser.GuiApi, parameter: Parameter, value: Any, wishes: Wishes) -> None:
+        super().__init__(parameter, value)
+        self._text: Any = gui.add_text(
+            parameter.label,
+            parts_text(value),
+            multiline=True,
+            hint=f"{hint(parameter)} Here a line for each: change its numbers, or delete it.",
+        )
+        self._text.on_update(by_user(lambda event: wishes.change(parameter.key, self._meant()), wishes.fail))
+        types = {choice_words(road_type).capitalize(): road_type for road_type in ADDED}
+        adding = gui.add_button_group(
+            "Add",
+            tuple(types),
+            hint="Put an obstacle on this road, behind those that are there, or make it rougher",
+        )
+        self._taking = gui.add_button("Take the last one away", hint="The last of the parts above")
+        adding.on_click(by_user(lambda event: wishes.add_to_road(types[event.target.value]), wishes.fail))
+        self._taking.on_click(by_user(lambda event: wishes.take_from_road(), wishes.fail))
+
+    def _meant(self) -> Any:
+        return parts_from(self._text.value, self.value)
+
+    def show(self, value: Any) -> None:
+        self.value = value
+        text = parts_text(value)
+        if self._text.value != text:
+            self._text.value = text
+
+    def enable(self, applies: bool) -> None:
+        self._text.visible = self._taking.visible = applies

@@ -1,0 +1,131 @@
+"""The tab "Runs": the figures of the run beside its baseline, and the runs that are kept."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+import viser
+
+from app.format.load_unit import comparison_rows
+from app.panels.callbacks import by_user
+from app.runs.history import Kept
+from app.tabs.comparison import comparison_table
+from model.simulation.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from app.session.workspace import Desk
+
+PIN, SWAP, CLEAR = "Pin", "Swap", "Clear"
+SHOW, COMPARE, DELETE = "Show", "Compare", "✕"
+STYLE = (Path(__file__).parents[2] / "assets" / "runs.css").read_text()
+HOW_TO = "No baseline. Pin a run (B) and change something: its curves stay, pale, and its figures stand here too."
+
+
+class Keeping(Protocol):
+    """What the panel asks of the session."""
+
+    def ask(self, kind: str, act: Callable[[Desk], None]) -> None: ...
+
+    def fail(self, error: Exception) -> None: ...
+
+
+class RunsPanel:
+    """Fills a container (a tab) of `gui`."""
+
+    def __init__(self, gui: viser.GuiApi, container: Any, keeping: Keeping) -> None:
+        self._gui, self._keeping = gui, keeping
+        self._rows: dict[int, viser.GuiButtonGroupHandle] = {}
+        with container:
+            self._style = gui.add_html("")
+            self._heading = gui.add_html("")
+            self._name: Any = gui.add_text("Name", "", hint="Of the run that is shown: give it one and it is kept")
+            baseline = gui.add_button_group(
+                "Baseline",
+                (PIN, SWAP, CLEAR),
+                hint="Pin: compare with the run that is shown from now on (B). Swap: show the baseline, and compare "
+                "with what is shown now. Clear: no comparison.",
+            )
+            self._figures = gui.add_html("")
+            self._folder = gui.add_folder("Kept runs")
+        self._name.on_update(by_user(lambda event: self._rename(event.target.value), keeping.fail))
+        acts: dict[str, Callable[[Desk], None]] = {
+            PIN: lambda desk: desk.pin(),
+            SWAP: lambda desk: desk.swap(),
+            CLEAR: lambda desk: desk.clear(),
+        }
+        baseline.on_click(by_user(lambda event: keeping.ask("baseline", acts[event.target.value]), keeping.fail))
+
+    def compare(self, now: Trajectory, baseline: Trajectory | None) -> None:
+        """Show the figures of a run of at least one sample, and those of the baseline."""
+        rows = comparison_rows(now, baseline)
+        self._figures.content = comparison_table(rows, baseline is not None)
+
+    def show(self, runs: Iterable[Kept], name: str, now: Kept | None, baseline: Kept | None, before_drive: str) -> None:
+        """Show which runs are kept, which of them is shown (under this name), and which one is the baseline.
+
+        before_drive: name of the run that came last, while a drive is shown that has no figures of its own here.
+        """
+        kept = {run.number: run for run in runs}
+        for number in self._rows.keys() - kept.keys():
+            self._rows.pop(number).remove()
+        for number, run in kept.items():
+            if number not in self._rows:
+                self._rows[number] = self._row(run)
+            elif self._rows[number].label != run.name:
+                self._rows[number].label = run.name
+        self._heading.content = _heading(name, now, baseline, before_drive)
+        self._style.content = self._marks(kept.values(), now)
+
+    def show_name(self, name: str) -> None:
+        """Put another run's name into its box."""
+        if self._name.value != name:
+            self._name.value = name
+
+    def _rename(self, name: str) -> None:
+        self._keeping.ask("name", lambda desk: desk.rename(name))
+
+    def _row(self, run: Kept) -> viser.GuiButtonGroupHandle:
+        """Name and buttons of a run, the newest on top."""
+        number = run.number
+        acts: dict[str, Callable[[Desk], None]] = {
+            SHOW: lambda desk: desk.recall(number),
+            COMPARE: lambda desk: desk.compare(number),
+            DELETE: lambda desk: desk.delete(number),
+        }
+        with self._folder:
+            row = self._gui.add_button_group(
+                run.name,
+                (SHOW, COMPARE, DELETE),
+                order=-number,
+                hint="Show: all parameters as in this run. Compare: make it the baseline. ✕: forget it.",
+            )
+        row.on_click(
+            by_user(
+                lambda event: self._keeping.ask(f"run {number}", acts[event.target.value]),
+                self._keeping.fail,
+            )
+        )
+        return row
+
+    def _marks(self, runs: Iterable[Kept], now: Kept | None) -> str:
+        """Style of the tab: each row in its colour, that of the run that is shown in bold."""
+        rules = [STYLE]
+        rules += [f'label[for="{self._rows[run.number]._impl.uuid}"]::before {{ color: {run.colour} }}' for run in runs]
+        if now is not None and now.number in self._rows:
+            rules.append(f'label[for="{self._rows[now.number]._impl.uuid}"] {{ font-weight: 650 }}')
+        return f'<style class="trackride-runs">{" ".join(rules)}</style>'
+
+
+def _heading(name: str, now: Kept | None, baseline: Kept | None, before_drive: str) -> str:
+    """HTML: which run is compared with which."""
+    when, shown = ("Last run", before_drive) if before_drive else ("Now", name)
+    compared = HOW_TO if baseline is None else f"<b>Baseline</b> {_named(baseline.name, baseline)}"
+    return f'<div class="trackride-compared"><b>{when}</b> {_named(shown, now)}<br>{compared}</div>'
+
+
+def _named(name: str, run: Kept | None) -> str:
+    dot = "" if run is None else f'<span style="color: {run.colour}">●</span> '
+    return dot + html.escape(name)

@@ -1,0 +1,101 @@
+"""The tab "Spectrum": where the hull is shaken, and the vehicle's own modes, which can be shown in the 3-D view."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from typing import Any, Protocol
+
+import viser
+
+from app.panels.callbacks import by_user
+from app.panels.charts import Charts
+from app.panels.plot_page import marks_html
+from app.plots.spectrum import named, spectrum_plot
+from app.tabs.modes import mode_titles, modes_page
+from model.analysis.modes import Mode, Modes, vehicle_modes
+from model.analysis.spectrum import excitation
+from model.dynamics.equilibrium import NoEquilibriumError
+from model.simulation.trajectory import Trajectory
+
+AMPLITUDE, DENSITY = "Amplitude, m/s²", "Power density, m²/s³"
+HULL, SEAT = "Centre of mass", "Driver's seat"
+NO_MODE = "– the run –"
+BELOW_CHART = 1e9  # order of what stands there: a chart made anew goes to the end of those without
+
+
+class Analyst(Protocol):
+    """What the panel asks of the session."""
+
+    def redraw_spectrum(self) -> None: ...
+
+    def show_mode(self) -> None: ...
+
+    def fail(self, error: Exception) -> None: ...
+
+
+class SpectrumPanel:
+    """Fills a container (a tab) of `gui`."""
+
+    def __init__(self, gui: viser.GuiApi, container: Any, analyst: Analyst) -> None:
+        self._modes: Modes | None = None
+        with container:
+            self._marks = gui.add_html("")
+            self._kind: Any = gui.add_dropdown(
+                "Spectrum",
+                (AMPLITUDE, DENSITY),
+                hint="Amplitude: a wave of height a shows a peak as high as a. Power density (Welch): how much is in "
+                "each hertz; the area under it is the square of the rms. Both of the steady part of the run.",
+            )
+            self._place: Any = gui.add_dropdown(
+                "Felt at", (HULL, SEAT), hint="Where the driver sits is set under Vehicle: Seat, forward and up"
+            )
+            self._choice: Any = gui.add_dropdown(
+                "Show in 3-D",
+                (NO_MODE,),
+                order=BELOW_CHART + 1,
+                hint="A mode of the vehicle, much enlarged and at one swing a second; the ghost stands at rest. "
+                "Play, or any change, leads back to the run.",
+            )
+            self._table = gui.add_html("", order=float("inf"))
+        self._charts = Charts(gui, container)
+        for box in (self._kind, self._place):
+            box.on_update(by_user(lambda event: analyst.redraw_spectrum(), analyst.fail))
+        self._choice.on_update(by_user(lambda event: analyst.show_mode(), analyst.fail))
+
+    def show(self, run: Trajectory, baseline: Trajectory | None, colour: str, height: int) -> None:
+        """Show a run, beside its baseline, in a CSS colour and a chart of a height, px."""
+        self._modes = None
+        with suppress(NoEquilibriumError):
+            self._modes = vehicle_modes(run.config)
+        waves = excitation(run.config)
+        marks = named(waves, self._modes)
+        plot = spectrum_plot(
+            run,
+            colour,
+            marks,
+            baseline,
+            density=self._kind.value == DENSITY,
+            at_seat=self._place.value == SEAT,
+        )
+        self._charts.show((plot,), height)
+        self._marks.content, self._table.content = marks_html(marks), modes_page(waves, self._modes)
+        titles = (NO_MODE, *mode_titles(self._modes))
+        if self._choice.options != titles:
+            self._choice.options = titles
+
+    def offer_modes(self, on: bool) -> None:
+        """Whether a mode can be chosen: during a drive there is no run whose place it could take."""
+        if self._choice.disabled is on:
+            self._choice.disabled = not on
+
+    @property
+    def chosen(self) -> Mode | None:
+        """The mode to be shown."""
+        titles = mode_titles(self._modes)
+        value = self._choice.value
+        return self._modes.swinging[titles.index(value)] if self._modes is not None and value in titles else None
+
+    def choose_run(self) -> None:
+        """Say that no mode is shown."""
+        if self._choice.value != NO_MODE:
+            self._choice.value = NO_MODE

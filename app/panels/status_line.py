@@ -1,0 +1,40 @@
+"""The line that says which run or drive is shown, as HTML. Pure."""
+
+from __future__ import annotations
+
+import html
+
+from app.runs.drive import DriveState
+from model.simulation.trajectory import Trajectory
+
+BUSY_DELAY = 0.2  # s before a run is called under way: quick ones are not worth a flicker
+SLOW_START = 1.5  # s without progress: the model is being compiled
+FIRST_START = "compiling the model, for half a minute…"
+
+
+def run_line(number: int, run: Trajectory) -> str:
+    """HTML: what a run took."""
+    took = run.statistics.seconds
+    reached = float(run.t[-1]) if len(run.t) else 0.0
+    speed = f"{reached / took:.0f}× real time" if took > 0 else ""
+    facts = f"{reached:.3g} s in {1e3 * took:.0f} ms · {speed}"
+    return status_line(f"Run {number}", facts, "" if run.complete else "stopped early")
+
+
+def progress_line(number: int, part: float, seconds: float) -> str:
+    """HTML: how far a run is, part 0…1, after so many seconds."""
+    doing = FIRST_START if part == 0 and seconds > SLOW_START else f"computing… {100 * part:.0f} %"
+    return status_line(f"Run {number}", doing)
+
+
+def drive_facts(state: DriveState) -> str:
+    """What the status line says of a drive."""
+    if state.ended:
+        return "it came to an end; look back, or restart"
+    return "look back with ← or the slider" if state.stands else "changes act at once"
+
+
+def status_line(name: str, facts: str, trouble: str = "") -> str:
+    """HTML of the line that says which run this is."""
+    bad = f' · <span class="bad">{html.escape(trouble)}</span>' if trouble else ""
+    return f'<div class="trackride-status"><b>{html.escape(name)}</b> · {html.escape(facts)}{bad}</div>'

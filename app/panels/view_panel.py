@@ -1,0 +1,135 @@
+"""The folder for the 3-D view."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import viser
+
+from app.format.load_colours import RAMP
+from app.format.load_unit import LoadUnit
+from app.panels.callbacks import by_user
+from app.tabs.load_map import ticks
+from app.view3d.overlays import TRACTION_SCALE
+
+VIEWS = {
+    "Side": "side",
+    "¾": "three-quarter",
+    "Front": "front",
+    "Wheel": "wheel",
+}  # shown -> the stage's name
+SWITCHES = {  # attribute of the stage -> label, whether it is on at first, hint
+    "follow": ("Follow vehicle", True, "The camera goes along with the vehicle (F); off: the vehicle drives past"),
+    "show_arrows": (
+        "Load arrows",
+        True,
+        "On each contact point, as high as the normal load f_n is large; none: in the air",
+    ),
+    "show_static_load": ("Static loads", True, "A tick across each arrow: how high it is at rest on flat ground"),
+    "show_traction": (
+        "Traction arrows",
+        False,
+        f"Force f_t along the road, drawn {TRACTION_SCALE:g} times as long as a load of that size; forward: it drives",
+    ),
+    "show_in_air": ("Wheels in the air", True, "A red ring around each wheel that has left the ground"),
+    "show_load_colours": (
+        "Load colours",
+        False,
+        "A ring on each wheel in the colour of its normal load f_n; the scale appears below",
+    ),
+    "show_travel": (
+        "Travel",
+        False,
+        "A bar beside each road wheel: how far it moves up and down in the hull; long mark: at rest",
+    ),
+    "show_labels": (
+        "Wheel names",
+        True,
+        "R1… are road wheels, I1… imaginary wheels, front first. Click a wheel for all its figures",
+    ),
+    "show_loads": ("Loads in figures", False, "The normal load f_n under each wheel's name"),
+    "show_scale_bar": ("Scale bar", True, "A round length, under the rear of the vehicle"),
+    "show_grid": (
+        "Grid",
+        False,
+        "Lines every half metre and metre on a wall behind the vehicle; heights from level ground",
+    ),
+}
+LOOK = (
+    "Side, front corner, ahead, or close to the front wheels (keys 1, 2, 3, 4). In the view itself drag to turn, with "
+    "the right button to shift; the mouse's wheel zooms."
+)
+ARROW_SCALE = 0.25, 4.0, 0.25  # least, most, step
+
+
+class Viewer(Protocol):
+    """What the panel asks of the session."""
+
+    def set_view(self, view: str) -> None: ...
+
+    def set_switch(self, attribute: str, on: bool | float) -> None: ...
+
+    def set_dark(self, dark: bool) -> None: ...
+
+    def fail(self, error: Exception) -> None: ...
+
+
+class ViewPanel:
+    """Fills a folder of `gui`."""
+
+    def __init__(self, gui: viser.GuiApi, folder: viser.GuiFolderHandle, dark: bool, viewer: Viewer) -> None:
+        with folder:
+            views = gui.add_button_group("Look from", tuple(VIEWS), hint=LOOK)
+            self._switches: dict[str, Any] = {
+                attribute: gui.add_checkbox(label, on, hint=hint) for attribute, (label, on, hint) in SWITCHES.items()
+            }
+            scale = gui.add_slider(
+                "Arrow length",
+                *ARROW_SCALE,
+                initial_value=1.0,
+                hint="Of all force arrows; at 1 an even share of the weight is as high as a road wheel, at 2 as two",
+            )
+            self._night: Any = gui.add_checkbox(
+                "Dark", dark, hint="Dark colours for page, plots and view; at first as the browser is set"
+            )
+            self._load_scale = gui.add_html("", visible=False)
+        views.on_click(by_user(lambda event: viewer.set_view(VIEWS[event.target.value]), viewer.fail))
+        for attribute, box in self._switches.items():
+            box.on_update(by_user(_switching(viewer, attribute), viewer.fail))
+        scale.on_update(by_user(_switching(viewer, "arrow_scale"), viewer.fail))
+        self._night.on_update(by_user(lambda event: viewer.set_dark(event.target.value), viewer.fail))
+
+    def show_dark(self, dark: bool) -> None:
+        """Say which look the page has."""
+        self._night.value = dark
+
+    def show_load_scale(self, top: float | None, unit: LoadUnit) -> None:
+        """What the wheels' colours mean, from 0 to `top`, N, told in that unit; None: they mean nothing."""
+        self._load_scale.visible = top is not None
+        if top is not None:
+            self._load_scale.content = load_scale(top, unit)
+
+    def toggle(self, attribute: str) -> bool:
+        """Turn a switch over; its new state."""
+        box = self._switches[attribute]
+        box.value = not box.value
+        return box.value
+
+
+def load_scale(top: float, unit: LoadUnit) -> str:
+    """HTML of the ramp of load colours up to `top`, N, with its ticks in that unit."""
+    highest = top / unit.newtons
+    marks = "".join(
+        f'<span style="position: absolute; left: {100 * tick / highest:.2f}%; translate: -50%">{tick:g}</span>'
+        for tick in ticks(0.0, highest, 4)
+    )
+    return (
+        f'<div style="padding: 0 0.8em 0.5em; font-size: 0.8em">Normal load, {unit.name}'
+        f'<div style="height: 0.8em; background: linear-gradient(to right, {", ".join(RAMP)})"></div>'
+        f'<div style="position: relative; height: 1.6em">{marks}</div></div>'
+    )
+
+
+def _switching(viewer: Viewer, attribute: str) -> Callable[[Any], None]:
+    return lambda event: viewer.set_switch(attribute, event.target.value)

@@ -1,0 +1,1 @@
+"""What the plots show: curves of a run, thinned to what pixels show; no viser."""

@@ -1,0 +1,158 @@
+"""What the plots show, without a plot: a run (and a baseline) -> named curves, thinned to what pixels show."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Literal
+
+import numpy as np
+
+from app.format.colours import Palette
+from app.format.load_unit import LoadUnit, load_unit
+from app.plots.thinning import thin
+from model.simulation.trajectory import Trajectory
+
+DECIMALS = 2  # of the values that are plotted; the page tells no more (plots.js)
+TIME = "Time, s"
+
+
+@dataclass(frozen=True)
+class Curve:
+    """One line of a plot."""
+
+    label: str
+    colour: str  # CSS
+    kind: Literal["run", "baseline", "static"] = "run"  # of this run, of the one compared with, load at rest
+    wheel: int | None = None  # in the model's order; None: of the whole vehicle
+    faded: bool = False  # another wheel is singled out
+
+
+@dataclass(frozen=True)
+class Plot:
+    """Curves over one axis."""
+
+    title: str
+    unit: str
+    curves: tuple[Curve, ...]
+    least: tuple[float, float] | None  # range of the unit that is always in view
+    x: np.ndarray = field(compare=False)  # (K,) rising, in the axis's unit
+    values: np.ndarray = field(compare=False)  # (K, curves), in the unit; NaN where a baseline has ended
+    axis: str = TIME
+
+    @property
+    def data(self) -> tuple[np.ndarray, ...]:
+        """For uPlot: x and one array for each curve; at least one point."""
+        if not len(self.x):
+            return tuple(np.zeros((1 + len(self.curves), 1)))
+        return (self.x, *np.ascontiguousarray(self.values.T))
+
+
+def load_plots(
+    run: Trajectory, palette: Palette, baseline: Trajectory | None = None, wheel: int | None = None
+) -> tuple[Plot, ...]:
+    """Normal load of road wheels and of imaginary wheels, in the vehicle's unit, and the imaginary ones' share, %.
+
+    A baseline adds its curves, one for each wheel that the run has too. A wheel that is singled out leaves the others
+    faded. A dotted line marks the load at rest: of that wheel, or the wheels' mean. A vehicle without imaginary wheels
+    has no plots of theirs.
+    """
+    n, m = run.system.n, run.system.m
+    unit = load_unit(run.system)
+    wheel_weight = float(run.system.weight.sum()) / (n + m)
+    families = [("Normal load of road wheels", wheel_curves("R", palette.road, 0, wheel), partial(_road_loads, unit))]
+    if m:
+        imaginary = wheel_curves("I", palette.imaginary, n, wheel)
+        families += [("Normal load of imaginary wheels", imaginary, partial(_other_loads, unit))]
+    plots = [
+        time_plot(
+            title,
+            unit.name,
+            (0.0, wheel_weight / unit.newtons),
+            curves,
+            values,
+            run,
+            baseline,
+            at_rest=_at_rest(run, unit, curves, palette.hull),
+        )
+        for title, curves, values in families
+    ]
+    if m:
+        share = [Curve("Share", palette.hull)]
+        plots += [time_plot("Load carried by imaginary wheels", "%", (0.0, 1.0), share, _share, run, baseline)]
+    return tuple(plots)
+
+
+def wheel_curves(letter: str, colours: Sequence[str], first: int, single: int | None) -> list[Curve]:
+    """A curve for each wheel of a family whose first is number `first`; faded when another wheel is singled out."""
+    return [
+        Curve(f"{letter}{i + 1}", colour, wheel=first + i, faded=single not in (None, first + i))
+        for i, colour in enumerate(colours)
+    ]
+
+
+def time_plot(
+    title: str,
+    unit: str,
+    least: tuple[float, float] | None,
+    curves: list[Curve],
+    values: Callable[[Trajectory], np.ndarray],
+    run: Trajectory,
+    baseline: Trajectory | None = None,
+    at_rest: tuple[float, Curve] | None = None,
+) -> Plot:
+    """A plot over time. values: run -> (N, C), a column for each curve; at_rest: a dotted line and its height."""
+    shown = values(run)
+    columns, finite = [shown], np.isfinite(shown)
+    if baseline is not None and len(baseline.t):
+        others = values(baseline)[:, : len(curves)]
+        curves = curves + [
+            Curve(curve.label, curve.colour, "baseline", curve.wheel, curve.faded)
+            for curve in curves[: others.shape[1]]
+        ]
+        columns += [at_times(run.t, baseline.t, others)]
+    time, thinned = run.t, np.hstack(columns) if len(columns) > 1 else shown
+    if not finite.all():
+        samples = finite.all(axis=1)
+        time, thinned = time[samples], thinned[samples]
+    time, thinned = thin(time, thinned)
+    if at_rest is not None:
+        height, line = at_rest
+        curves = [*curves, line]
+        thinned = np.vstack([thinned.T, np.full(len(time), height)]).T
+    return Plot(title, unit, tuple(curves), least, time, np.round(thinned, DECIMALS))
+
+
+def at_times(t: np.ndarray, own: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """(N, C) values of another run, sampled at `own` times, at times t; NaN after its end."""
+    if np.array_equal(t, own):
+        return values
+    columns = np.column_stack([np.interp(t, own, column) for column in values.T])
+    columns[t > own[-1]] = np.nan
+    return columns
+
+
+def _at_rest(run: Trajectory, unit: LoadUnit, curves: list[Curve], colour: str) -> tuple[float, Curve]:
+    """Load at rest of the family's wheel that is singled out, in its colour, or the wheels' mean in `colour`."""
+    clear = [curve for curve in curves if not curve.faded]
+    loads = [run.static_load[curve.wheel] for curve in clear or curves if curve.wheel is not None]
+    shade = clear[0].colour if len(clear) == 1 else colour
+    return float(np.mean(loads)) / unit.newtons, Curve("at rest", shade, "static", faded=not clear)
+
+
+def _road_loads(unit: LoadUnit, run: Trajectory) -> np.ndarray:
+    """(N, n)."""
+    return unit.of(run.normal_load[:, : run.system.n])
+
+
+def _other_loads(unit: LoadUnit, run: Trajectory) -> np.ndarray:
+    """(N, m)."""
+    return unit.of(run.normal_load[:, run.system.n :])
+
+
+def _share(run: Trajectory) -> np.ndarray:
+    """(N, 1), % of all wheels' load; 0 with all in the air."""
+    total = run.normal_load.sum(axis=1)
+    imaginary = run.normal_load[:, run.system.n :].sum(axis=1)
+    return 100 * (imaginary / np.where(total > 0, total, 1.0))[:, None]

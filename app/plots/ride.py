@@ -1,0 +1,47 @@
+"""How the hull rides and the suspension moves: a run (and a baseline) -> plots. Pure."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.format.colours import Palette
+from app.plots.curves import Curve, Plot, time_plot, wheel_curves
+from model.analysis.ride import suspension_travel
+from model.simulation.trajectory import Trajectory
+
+
+def ride_plots(
+    run: Trajectory, palette: Palette, baseline: Trajectory | None = None, wheel: int | None = None
+) -> tuple[Plot, ...]:
+    """Vertical acceleration of the hull, m/s², its pitch, °, its speed, km/h, and each road wheel's travel, mm.
+
+    Baseline and wheel as in `load_plots`.
+    """
+    hull = [Curve("Hull", palette.hull)]
+    road = wheel_curves("R", palette.road, 0, wheel if wheel is not None and wheel < run.system.n else None)
+    return (
+        time_plot("Vertical acceleration of the hull", "m/s²", (-0.5, 0.5), hull, _acceleration, run, baseline),
+        time_plot("Pitch of the hull, nose up positive", "degrees", (-0.5, 0.5), hull, _pitch, run, baseline),
+        time_plot("Speed", "km/h", None, hull, _speed, run, baseline),
+        time_plot("Suspension travel, up positive", "mm", (-5.0, 5.0), road, _travel, run, baseline),
+    )
+
+
+def _acceleration(run: Trajectory) -> np.ndarray:
+    """(N, 1), m/s²."""
+    return run.a[:, run.system.chassis, 1:2]
+
+
+def _pitch(run: Trajectory) -> np.ndarray:
+    """(N, 1), °."""
+    return np.degrees(run.q[:, run.system.chassis, 2:3])
+
+
+def _speed(run: Trajectory) -> np.ndarray:
+    """(N, 1), km/h, forward."""
+    return 3.6 * run.v[:, run.system.chassis, 0:1]
+
+
+def _travel(run: Trajectory) -> np.ndarray:
+    """(N, n), mm."""
+    return 1e3 * suspension_travel(run) if len(run.t) else np.zeros((0, run.system.n))

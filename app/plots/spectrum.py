@@ -1,0 +1,76 @@
+"""Where the hull is shaken, and where it likes to swing: a run (and a baseline) -> spectrum and marks. Pure."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from app.plots.curves import Curve, Plot
+from app.plots.thinning import thin
+from model.analysis.modes import Modes
+from model.analysis.signals import CENTRE_OF_MASS, seat
+from model.analysis.spectrum import acceleration_density, acceleration_spectrum
+from model.simulation.trajectory import Trajectory
+
+LOWEST_END = 8.0  # Hz: the axis goes this far at least …
+HARMONICS = 3.0  # … and to this many times v/λ
+DECIMALS = 4  # of the values that are plotted; the page tells no more (plots.js)
+LEAST_SAMPLES = 8  # of a run that has a spectrum
+
+
+class Mark(NamedTuple):
+    """A frequency to know when reading a spectrum."""
+
+    name: str
+    frequency: float  # Hz
+    drives: bool = False  # the vehicle, other than its own frequencies
+
+
+def spectrum_plot(
+    run: Trajectory,
+    colour: str,
+    marks: tuple[Mark, ...],
+    baseline: Trajectory | None = None,
+    *,
+    density: bool = False,
+    at_seat: bool = False,
+) -> Plot:
+    """Spectrum of the vertical acceleration in the steady part of the run, at the centre of mass or the driver's seat.
+
+    Amplitude, m/s², or power density, m²/s³.
+    """
+
+    def spectrum(trajectory: Trajectory) -> tuple[np.ndarray, np.ndarray]:
+        if len(trajectory.t) < LEAST_SAMPLES:
+            return np.zeros(1), np.zeros(1)
+        point = seat(trajectory.config) if at_seat else CENTRE_OF_MASS
+        return (acceleration_density if density else acceleration_spectrum)(trajectory, point)
+
+    place = "Driver's seat" if at_seat else "Centre of mass"
+    curves = [Curve(place, colour)]
+    frequency, height = spectrum(run)
+    columns = [height]
+    if baseline is not None and len(baseline.t) >= LEAST_SAMPLES:
+        curves += [Curve(place, colour, "baseline")]
+        columns += [np.interp(frequency, *spectrum(baseline), right=np.nan)]
+    highest = max((HARMONICS * mark.frequency for mark in marks if mark.drives), default=0.0)
+    shown = frequency <= max(LOWEST_END, highest)
+    frequency, values = thin(frequency[shown], np.column_stack(columns)[shown])
+    return Plot(
+        f"Vertical acceleration: {'power density' if density else 'amplitude'}",
+        "m²/s³" if density else "m/s²",
+        tuple(curves),
+        (0.0, 0.1),
+        frequency,
+        np.round(values, DECIMALS),
+        axis="Frequency, Hz",
+    )
+
+
+def named(excitation: float | None, modes: Modes | None) -> tuple[Mark, ...]:
+    """Excitation v/λ, Hz, and the hull's natural frequencies, as far as they exist; the highest first."""
+    found = [] if excitation is None else [Mark("v/λ", excitation, drives=True)]
+    hull = () if modes is None else (modes.bounce, modes.pitch)
+    found += [Mark(mode.name, mode.frequency) for mode in hull if mode is not None]
+    return tuple(sorted(found, key=lambda mark: -mark.frequency))

@@ -1,0 +1,1 @@
+"""Pages and sheets to read, print and pass on; no viser."""

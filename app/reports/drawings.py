@@ -1,0 +1,146 @@
+"""Plots for pages: light and dark, as SVG or PNG, with matplotlib but without its global state."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from app.format.colours import Palette, wheel_palette
+from app.plots.curves import Curve, Plot
+from model.dynamics.vehicle import System
+
+DPI = 200  # of a PNG
+WIDTH, HEIGHT = 9.6, 2.6  # inches, of a plot on a page
+LEFT, RIGHT, ABOVE, BELOW = 0.5, 0.12, 0.32, 0.5  # inches around a plot, for its numbers and names
+HEADROOM = 0.11  # of a plot's height, for the name of a mark
+SIZE, SMALL = 9.5, 8.5  # points
+NAMES = 0.6  # of a plot's width that its curves' names may take
+
+
+@dataclass(frozen=True)
+class Look:
+    """Colours of a plot, CSS."""
+
+    dark: bool
+    ink: str
+    grey: str
+    grid: str
+    accents: tuple[str, str]  # of curves that belong to no wheel
+
+    def palette(self, system: System) -> Palette:
+        """The colours of a vehicle's wheels."""
+        return wheel_palette(system.n, system.m, self.dark)
+
+
+LIGHT = Look(False, "#1c2024", "#66707a", "#e1e5e9", ("#1864ab", "#c2410c"))
+DARK = Look(True, "#e6e9ec", "#98a2ad", "#343a41", ("#74b9ff", "#ff9d5c"))
+LOOKS = (LIGHT, DARK)
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A picture that can be drawn in any look."""
+
+    title: str  # what it shows, for those who do not see it
+    width: float  # inches
+    height: float
+    draw: Callable[[Figure, Look], None]
+
+    def bytes(self, suffix: str, look: Look = LIGHT, background: str = "none") -> bytes:
+        """The content of a .svg or .png file. background: CSS, or none."""
+        figure = Figure(figsize=(self.width, self.height), dpi=DPI, facecolor=background)
+        self.draw(figure, look)
+        maker = {".png": "Software", ".svg": "Creator"}[suffix]
+        file = io.BytesIO()
+        figure.savefig(
+            file, format=suffix[1:], metadata={"Title": self.title, maker: f"Trackride {version('trackride')}"}
+        )
+        return file.getvalue()
+
+
+def panels(figure: Figure, rows: int, columns: int) -> list[Axes]:
+    """Axes of one size, from left to right and top to bottom, with the same margins in every figure."""
+    width, height = figure.get_size_inches()
+    across, down = width / columns, height / rows
+    return [
+        figure.add_axes((
+            (column * across + LEFT) / width,
+            1 - ((row + 1) * down - BELOW) / height,
+            (across - LEFT - RIGHT) / width,
+            (down - BELOW - ABOVE) / height,
+        ))
+        for row in range(rows)
+        for column in range(columns)
+    ]  # fmt: skip
+
+
+def plain_axes(axes: Axes, look: Look, title: str = "", x: str = "", y: str = "") -> None:
+    """Give axes the pages' look."""
+    axes.set_facecolor("none")
+    axes.set_title(title, fontsize=SIZE, color=look.ink, loc="left", pad=7, weight="bold")
+    axes.set_xlabel(x, fontsize=SMALL, color=look.ink)
+    axes.set_ylabel(y, fontsize=SMALL, color=look.ink)
+    axes.grid(color=look.grid, lw=0.7)
+    axes.set_axisbelow(True)
+    axes.tick_params(labelsize=SMALL, length=3, width=0.6, color=look.grey, labelcolor=look.ink)
+    for side, spine in axes.spines.items():
+        spine.set(lw=0.6, color=look.grey, visible=side in ("left", "bottom"))
+
+
+def plots_drawing(
+    title: str, plots: Callable[[Look], Sequence[Plot]], marks: Mapping[str, float] | None = None
+) -> Drawing:
+    """Plots of the explorer, one below the other. marks: name -> where on their axis to draw an upright line."""
+
+    def draw(figure: Figure, look: Look) -> None:
+        shown = plots(look)
+        for axes, plot in zip(panels(figure, len(shown), 1), shown, strict=True):
+            draw_plot(axes, plot, look)
+            low, high = axes.get_ylim()
+            axes.set_ylim(low, high + HEADROOM * (high - low) * len(marks or {}))
+            for row, (name, x) in enumerate((marks or {}).items()):
+                mark(axes, name, x, look, row)
+
+    return Drawing(title, WIDTH, HEIGHT * len(plots(LIGHT)), draw)
+
+
+def mark(axes: Axes, name: str, x: float, look: Look, row: int = 0) -> None:
+    """An upright line with its name at the top, `row` rows down."""
+    axes.axvline(x, color=look.grey, lw=0.9, ls=(0, (4, 2)), zorder=1.5)
+    axes.annotate(
+        name, (x, 1), xycoords=("data", "axes fraction"), xytext=(4, -2 - 12 * row), textcoords="offset points",
+        va="top", fontsize=SMALL, color=look.grey, zorder=1.6,
+    )  # fmt: skip
+
+
+def draw_plot(axes: Axes, plot: Plot, look: Look) -> None:
+    """One plot of the explorer: its curves over its axis, their names in their colours beside the title."""
+    plain_axes(axes, look, f"{plot.title}, {plot.unit}", plot.axis)
+    for curve, values in zip(plot.curves, plot.values.T, strict=True):
+        axes.plot(plot.x, values, color=curve.colour, lw=1.1, ls=(0, (1, 1.6)) if curve.kind == "static" else "-")
+    if plot.least is not None:
+        low, high = axes.get_ylim()
+        axes.set_ylim(min(low, plot.least[0]), max(high, plot.least[1]))
+    axes.set_xlim(plot.x[0], max(plot.x[-1], plot.x[0] + 1e-3))
+    if len(plot.curves) > 1:
+        _name_curves(axes, plot.curves)
+
+
+def _name_curves(axes: Axes, curves: tuple[Curve, ...]) -> None:
+    """Their names in their colours, in line with the title, from the right."""
+    places = np.array([2.9 if curve.kind == "static" else 1.0 for curve in reversed(curves)])
+    step = min(0.034, NAMES / places.sum())
+    rights = 1 - step * np.concatenate([[0], np.cumsum(places)[:-1]])
+    for x, curve in zip(rights, reversed(curves), strict=True):
+        label = f"··· {curve.label}" if curve.kind == "static" else curve.label
+        size = min(SMALL, 250 * step)
+        axes.text(
+            x, 1.0, label, transform=axes.transAxes, ha="right", va="bottom", fontsize=size, color=curve.colour,
+            weight="bold",
+        )  # fmt: skip

@@ -1,0 +1,95 @@
+"""What `trackride paper` writes: the paper's figures as pictures, and a page about its statements."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from app.format.markup import words_html
+from app.reports.drawings import Drawing
+from app.reports.html_page import Html, document, element, picture
+from app.reports.paper.assumptions import assumptions
+from app.reports.paper.figures import FIGURES
+from app.reports.paper.findings import Finding, findings
+from model.paper.errata import ERRATA
+from model.paper.study import WAVES, PaperStudy
+
+TITLE = "What the paper says, and what its model does"
+PAPER = (
+    "Mahalingam and Padmanabhan, “Planar Multi-body Dynamics of a Tracked Vehicle using Imaginary Wheel Model for "
+    "Tracks”, Defence Science Journal: its vehicle on its road, computed again."
+)
+CLASSES = {
+    "holds": "good",
+    "holds within limits": "warn",
+    "does not hold here": "bad",
+    "cannot be compared": "note",
+}
+
+
+def paper_files(study: PaperStudy) -> dict[str, bytes]:
+    """Name -> content of every file: index.html, and each figure as PNG and SVG."""
+    drawings = {name: (make(study), words) for name, (make, words) in FIGURES.items()}
+    files = {"index.html": _page(study, drawings).encode()}
+    for name, (drawing, _) in drawings.items():
+        for suffix in (".png", ".svg"):
+            files[name + suffix] = drawing.bytes(suffix, background="white")
+    return files
+
+
+def _page(study: PaperStudy, drawings: dict[str, tuple[Drawing, str]]) -> str:
+    found = findings(study)
+    shown = {name: picture(drawing, words) for name, (drawing, words) in drawings.items()}
+    return document(
+        TITLE,
+        PAPER,
+        [
+            *_summary(found),
+            element("h2", "The paper's figures"),
+            element(
+                "p",
+                "The curves of the paper itself, measured and simulated, are not drawn beside ours: the copy that "
+                "this project has is without its figures.",
+                class_="note",
+            ),
+            *(shown[name] for name in ("fig5_acceleration", "fig6_spectrum", "fig7_loads")),
+            element("h2", "Its statements, one by one"),
+            *map(_finding, found),
+            element("h2", "The two claims as curves"),
+            shown["claims"],
+            element("h2", "Where higher harmonics come from"),
+            shown["harmonics"],
+            element("h2", "What our assumptions do to it"),
+            *assumptions(study),
+            element("h2", "How the paper is read"),
+            element("ol", *map(_erratum, range(len(ERRATA)))),
+            element("p", f"Figures of merit are taken over the last {WAVES} waves of each run.", class_="note"),
+        ],
+    )
+
+
+def _summary(found: list[Finding]) -> Iterator[Html]:
+    """How many statements came to what."""
+    tiles = []
+    for verdict, kind in CLASSES.items():
+        count = sum(finding.verdict == verdict for finding in found)
+        tiles.append(element("div", element("dt", verdict), element("dd", str(count), class_=kind)))
+    yield element("p", f"{len(found)} statements of the paper were put to the test.")
+    yield element("dl", *tiles)
+
+
+def _finding(finding: Finding) -> Html:
+    verdict = element(
+        "div",
+        finding.verdict,
+        element("small", f"section {finding.where}"),
+        class_=f"verdict {CLASSES[finding.verdict]}",
+    )
+    limit = element("p", finding.limit, class_="note") if finding.limit else Html()
+    parts = (verdict, element("h3", finding.statement), element("p", finding.found), limit)
+    return element("section", *parts, class_="finding")
+
+
+def _erratum(number: int) -> Html:
+    erratum = ERRATA[number]
+    paper, reading = Html(words_html(erratum.paper)), Html(words_html(erratum.reading))
+    return element("li", element("b", erratum.where), ". ", paper, " ", element("em", "Here: "), reading)

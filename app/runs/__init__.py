@@ -1,0 +1,1 @@
+"""From the latest wish to a run, and the runs that are kept."""

@@ -1,0 +1,234 @@
+"""What came of the user's changes: steps to go back and forth through, and the runs that are kept. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from app.panels.controls import choice_words, shown_text
+from app.runs.runner import Wish
+from model.config.config import Config
+from model.config.parameters import PARAMETER, Parameter
+from model.simulation.trajectory import Trajectory
+
+REST = 1.0  # s: changes of the same parameters that follow each other faster are one step
+STEPS = 200  # that can be undone
+RUNS = 20  # that are kept
+MEMORY = 200e6  # bytes of their trajectories, the newest run's aside
+NAMED_CHANGES = 2  # in the name of a run; the others are counted
+NAME_LIMIT = 80  # characters of a name that the user gives
+RUN_COLOURS = (
+    "#1c6cb2", "#d9480f", "#2b8a3e", "#9c36b5", "#c99700",
+    "#0b8494", "#c2255c", "#5c7cfa", "#74a12e", "#846358",
+)  # fmt: skip
+
+
+class Changes:
+    """Wishes to go back and forth through. All changes of a drag are one step."""
+
+    def __init__(self, first: Wish) -> None:
+        self._steps = [first]
+        self._at = 0
+        self._noted = float("-inf")  # when, s
+
+    @property
+    def present(self) -> Wish:
+        return self._steps[self._at]
+
+    def note(self, wish: Wish, now: float) -> None:
+        """A wish has come true at `now`, s; what had been undone before is forgotten."""
+        if same(wish, self.present):
+            return
+        moving = wish.touched and now - self._noted < REST
+        self._noted = now
+        del self._steps[self._at + 1 :]
+        before = self._steps[max(self._at - 1, 0)]
+        moved = changed_keys(before, self.present)
+        if moving and moved and changed_keys(before, wish) == moved:
+            self._steps[-1] = wish
+        else:
+            self._steps.append(wish)
+        del self._steps[: -STEPS - 1]
+        self._at = len(self._steps) - 1
+
+    def go(self, steps: int) -> Wish | None:
+        """The wish that many steps on, or back when negative, as far as there are any; None where there is none."""
+        target = min(max(self._at + steps, 0), len(self._steps) - 1)
+        if target == self._at:
+            return None
+        self._at, self._noted = target, float("-inf")
+        return self.present
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A run that is kept."""
+
+    number: int  # unique in its tab, rising
+    wish: Wish
+    config: Config  # wished for
+    run: Trajectory | None  # None: only its configuration is left, so that it can be made again
+    name: str
+    colour: str  # CSS
+    named: bool  # by the user
+
+    @property
+    def given_name(self) -> str:
+        """By the user; empty when it is called after its changes."""
+        return self.name if self.named else ""
+
+
+class Runs:
+    """The runs that are kept. Beyond RUNS of them the oldest without a name of the user's goes first; beyond MEMORY
+    the trajectories of the oldest go."""
+
+    def __init__(self) -> None:
+        self._kept: dict[int, Kept] = {}
+        self._last_number = 0
+
+    def __iter__(self) -> Iterator[Kept]:
+        """Oldest first."""
+        return iter(tuple(self._kept.values()))
+
+    def __len__(self) -> int:
+        return len(self._kept)
+
+    def __contains__(self, number: object) -> bool:
+        return number in self._kept
+
+    def __getitem__(self, number: int) -> Kept:
+        return self._kept[number]
+
+    def find(self, config: Config) -> Kept | None:
+        """The run of this configuration."""
+        return next((kept for kept in self if kept.config == config), None)
+
+    def keep(self, wish: Wish, run: Trajectory, name: str = "") -> Kept:
+        """Keep a run, unless one of the same configuration is kept already; that one, or the new one."""
+        self.complete(run)
+        return self.find(run.config) or self._add(wish, run.config, run, name, self._free_colour())
+
+    def take_back(self, kept: Kept) -> Kept:
+        """Keep what was kept at an earlier visit, unless the same configuration is kept already, as `keep` does."""
+        return self.find(kept.config) or self._add(kept.wish, kept.config, kept.run, kept.given_name, kept.colour)
+
+    def complete(self, run: Trajectory) -> None:
+        """Give a run, made again, to what is kept of it."""
+        found = next((kept for kept in self if kept.run is None and kept.config == run.config), None)
+        if found is not None:
+            self._kept[found.number] = replace(found, run=run)
+            self._make_room(self._kept[found.number])
+
+    def _add(self, wish: Wish, config: Config, run: Trajectory | None, name: str, colour: str) -> Kept:
+        self._last_number += 1
+        kept = Kept(self._last_number, wish, config, run, name or run_name(wish.base, config), colour, named=bool(name))
+        self._kept[kept.number] = kept
+        self._make_room(kept)
+        return kept
+
+    def rename(self, number: int, name: str) -> Kept:
+        """Give a run a name; without one it is called after its changes again."""
+        kept, name = self._kept[number], plain_name(name)
+        self._kept[number] = replace(kept, name=name or run_name(kept.wish.base, kept.config), named=bool(name))
+        return self._kept[number]
+
+    def delete(self, number: int) -> None:
+        self._kept.pop(number, None)
+
+    def _make_room(self, newest: Kept) -> None:
+        others = [kept for kept in self if kept is not newest]
+        if len(self._kept) > RUNS:
+            oldest = min(others, key=lambda kept: (kept.named, kept.number))
+            self.delete(oldest.number)
+            others.remove(oldest)
+        for kept in others:
+            if sum(map(size, self)) > MEMORY:
+                self._kept[kept.number] = replace(kept, run=None)
+
+    def _free_colour(self) -> str:
+        """The first colour that the fewest runs have."""
+        used = [kept.colour for kept in self]
+        return min(RUN_COLOURS, key=used.count)
+
+
+def size(kept: Kept) -> int:
+    """Bytes of a run's arrays."""
+    arrays = () if kept.run is None else vars(kept.run).values()
+    return sum(array.nbytes for array in arrays if isinstance(array, np.ndarray))
+
+
+def plain_name(name: str) -> str:
+    """A name of the user's, on one line and not too long."""
+    return " ".join(name.split())[:NAME_LIMIT]
+
+
+def same(one: Wish, other: Wish) -> bool:
+    """Whether two wishes are for the same base with the same changes."""
+    return one.base == other.base and dict(one.changes) == dict(other.changes)
+
+
+def changed_keys(one: Wish, other: Wish) -> frozenset[str] | None:
+    """Parameters in which two wishes differ; None when they start from different presets."""
+    if one.base != other.base:
+        return None
+    base, absent = one.base.values(), object()
+    return frozenset(
+        key
+        for key in {*one.changes, *other.changes}
+        if one.changes.get(key, base.get(key, absent)) != other.changes.get(key, base.get(key, absent))
+    )
+
+
+def first_wish(base: Config, config: Config) -> Wish:
+    """The wish for `config` as changes to `base`, so that a reset leads back to that."""
+    before, after = base.values(), config.values()
+    changes = {key: value for key, value in after.items() if before.get(key) != value}
+    wish = Wish(base, changes)
+    return wish if wish.config() == config else Wish(config)
+
+
+def run_name(base: Config, config: Config) -> str:
+    """What was changed in a preset: "Speed 15 → 22 km/h"; without changes the preset's name."""
+    changes = differences(base, config)
+    if not changes:
+        return base.name
+    more = len(changes) - NAMED_CHANGES
+    return ", ".join(changes[:NAMED_CHANGES]) + (f" and {more} more" if more > 0 else "")
+
+
+def differences(before: Config, after: Config) -> list[str]:
+    """Each parameter that differs, in words: "Speed 15 → 22 km/h"; names and descriptions left out."""
+    old, new = before.values(), after.values()
+    changed = [
+        key
+        for key, parameter in PARAMETER.items()
+        if parameter.kind != "text" and parameter.applies_to(after.road.type) and old.get(key) != new.get(key)
+    ]
+    return [
+        _difference(before.parameter(key), old.get(key), after.parameter(key), new.get(key))
+        if PARAMETER[key].applies_to(before.road.type)
+        else _named(after.parameter(key), new.get(key))
+        for key in changed
+    ]
+
+
+def _named(parameter: Parameter, value: Any) -> str:
+    """A value that there was not before: another type of road brings it along."""
+    return f"{parameter.label} {_words(parameter, value)} {parameter.shown_unit}".rstrip()
+
+
+def _difference(before: Parameter, old: Any, after: Parameter, new: Any) -> str:
+    """The unit once, unless the basis of the rates was changed and with it their unit."""
+    unit = f" {before.shown_unit}" if before.shown_unit != after.shown_unit and old is not None else ""
+    return f"{after.label} {_words(before, old)}{unit} → {_words(after, new)} {after.shown_unit}".rstrip()
+
+
+def _words(parameter: Parameter, value: Any) -> str:
+    if value is None:
+        return "left out"
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    return choice_words(value) if parameter.kind == "choice" else shown_text(parameter, value)

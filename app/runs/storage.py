@@ -1,0 +1,105 @@
+"""What a browser keeps of a tab from one visit to the next: a text made of configurations, and back. Pure."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from app.runs.history import RUN_COLOURS, RUNS, Kept, first_wish, plain_name, run_name
+from app.runs.runner import Wish
+from model.config.config import Config, ConfigError, part_values
+
+PRESETS = 30  # of the user's own, at most
+LONGEST = 1_000_000  # characters of a text that is looked at: more than all presets and runs take
+BAD = (ValueError, TypeError, KeyError, AttributeError, ConfigError)  # what comes of texts that others have written
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class State:
+    """What a tab is to find again."""
+
+    start: Config | None  # what the explorer had been started with
+    wish: Wish | None  # what was shown
+    presets: tuple[Config, ...]  # the user's own, oldest first
+    runs: tuple[Kept, ...]  # without their trajectories, oldest first
+    baseline: Kept | None
+    dark: bool | None  # the look that was chosen; None: the browser's own
+
+
+def state_text(
+    start: Config, wish: Wish, presets: Iterable[Config], runs: Iterable[Kept], baseline: Kept | None, dark: bool | None
+) -> str:
+    """All of it as JSON; of runs only how to make them again."""
+    return json.dumps(
+        {
+            "start": start.values(),
+            "wish": _wish_values(wish, wish.config()),
+            "presets": [preset.values() for preset in presets],
+            "runs": [_run_values(kept) for kept in runs],
+            "baseline": None if baseline is None else _run_values(baseline),
+            "dark": dark,
+        },
+        default=part_values,  # of the roads that a sum is made of
+    )
+
+
+def state_from(text: str) -> State:
+    """What can be used of a text, whoever has written it. Raises ValueError when it is no state at all."""
+    if len(text) > LONGEST:
+        raise ValueError(f"it is longer than {LONGEST} characters")
+    try:
+        state = json.loads(text)
+    except RecursionError:
+        raise ValueError("it is nested too deeply") from None
+    if not isinstance(state, dict):
+        raise ValueError("it is no state of the explorer")
+    return State(
+        start=_usable(_config, state.get("start")),
+        wish=_usable(_wish, state.get("wish")),
+        presets=_all_usable(_config, state.get("presets"), PRESETS),
+        runs=_all_usable(_run, state.get("runs"), RUNS),
+        baseline=_usable(_run, state.get("baseline")),
+        dark=state.get("dark") if isinstance(state.get("dark"), bool) else None,
+    )
+
+
+def _wish_values(wish: Wish, config: Config) -> dict[str, Any]:
+    return {"base": wish.base.values(), "config": config.values()}
+
+
+def _run_values(kept: Kept) -> dict[str, Any]:
+    about = {"name": kept.given_name, "colour": kept.colour}
+    return about | _wish_values(kept.wish, kept.config)
+
+
+def _config(values: Any) -> Config:
+    return Config().replace(values)
+
+
+def _wish(values: Any) -> Wish:
+    return first_wish(_config(values["base"]), _config(values["config"]))
+
+
+def _run(values: Any) -> Kept:
+    wish, name, colour = _wish(values), plain_name(str(values["name"])), values["colour"]
+    if colour not in RUN_COLOURS:
+        raise ValueError("no colour of a run")
+    config = wish.config()
+    return Kept(0, wish, config, None, name or run_name(wish.base, config), colour, named=bool(name))
+
+
+def _usable(read: Callable[[Any], T], values: Any) -> T | None:
+    try:
+        return read(values)
+    except BAD:
+        return None
+
+
+def _all_usable(read: Callable[[Any], T], values: Any, most: int) -> tuple[T, ...]:
+    """The newest that can be used."""
+    found = (_usable(read, one) for one in values[-most:]) if isinstance(values, list) else ()
+    return tuple(one for one in found if one is not None)

@@ -1,0 +1,377 @@
+"""One browser tab from connecting to disconnecting: its threads, and what passes between them.
+
+viser's event loop calls the methods that panels and keys know (change, scrub, set_view …): they leave a wish and
+return. The runner's thread (app/runs/runner.py) turns the latest wish into a run. The view's thread, VIEW_RATE times a
+second or as soon as there is a run, does all that is seen (app/session/window.py); it never draws under a lock.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
+from time import monotonic
+from typing import Any
+
+import viser
+
+from app.panels.road_parts import with_part, without_last
+from app.runs.history import first_wish
+from app.runs.playback import Playback
+from app.runs.runner import Driven, Failed, Finished, Outcome, Refused, Runner, Simulate, Wish
+from app.session.transfers import Order, Porter
+from app.session.window import Scene, Window
+from app.session.workspace import Desk
+from app.view3d.view import Stage
+from model.config.config import Config
+from model.simulation.simulate import simulate
+from model.simulation.trajectory import Trajectory
+
+VIEW_RATE = 30.0  # Hz: the 3-D view
+TEXT_RATE = 10.0  # Hz: numbers, time slider, time cursors …
+DRAG_TEXT_RATE = 3.0  # Hz: … while runs follow each other, whose curves the page has to draw meanwhile
+DRAG_PAUSE = 0.3  # s after which they do not any more
+REFUSAL_DELAY = 1.2  # s without another wish until a bad value is refused: time to finish typing
+SEEN_WITHIN = 2.0  # s in which what an errand wants is drawn, or else it goes on without
+SAME_ERROR = 5.0  # s before the same error is logged and shown again
+
+log = logging.getLogger("trackride")
+
+
+class Session:
+    """The methods may be called on any thread and return at once, but for close."""
+
+    def __init__(
+        self,
+        client: viser.ClientHandle,
+        presets: Mapping[str, Config],
+        preset: str,
+        config: Config,
+        *,
+        run: Simulate = simulate,
+        make_scene: Callable[[viser.ClientHandle, bool], Scene] = Stage,
+    ) -> None:
+        """presets: name -> configuration, among them `preset`; config: what to run first."""
+        self._lock = threading.Lock()  # of the next six
+        self._playback = Playback()
+        self._driving = False  # on and on, instead of a run
+        self._in_view = True  # the page is not in the background
+        self._intents: dict[str, Callable[[], None]] = {}  # what the view is to do: the newest of each kind
+        self._refused: Refused | None = None  # a bad wish that is not yet spoken of
+        self._refuse_at = 0.0  # monotonic s
+        self._shown_at = self._told_at = -DRAG_PAUSE  # monotonic s: when a run was shown last, and numbers and times
+
+        self._good: Finished | Driven | None = None  # what is shown
+        self._steps = 0  # to be redone, or undone when negative; under the lock
+        self._last_error: tuple[str, float] = ("", 0.0)
+        self._wake = threading.Event()
+        self._closed = threading.Event()
+        self._runner = Runner(first_wish(presets[preset], config), run, self._wake.set, self.fail)
+        try:
+            self._window = Window(client, presets, preset, config, self, make_scene)
+        except Exception:
+            self._runner.close()
+            raise
+        self._porter = Porter(client, self, self._window, run, self._intend)
+        self._desk = Desk(self._window, self._runner, presets, self._porter)
+        self._porter.recollect()
+        self._thread = threading.Thread(target=self._show, name="trackride-view", daemon=True)
+        self._thread.start()
+
+    # ── What the user wishes for ──
+
+    def change(self, key: str, value: Any) -> None:
+        """Wish for another value of a parameter (as in a file)."""
+        wished = self._runner.latest.changes.get(key)
+        if self._window.was_moved_to_end(key, wished):
+            with self._lock:
+                bad = self._refused is not None
+                self._refuse_at = 0.0  # typing has ended
+            if not bad:
+                self._intend(key, lambda: self._window.show_value(key, wished))
+        else:
+            self._runner.change(lambda wish: wish.changed(key, value))
+
+    def load(self, preset: str) -> None:
+        """Wish for a preset."""
+        base = self._desk.presets[preset]
+        self._runner.change(lambda wish: Wish(base))
+
+    def reset(self) -> None:
+        """Wish for the preset without any change."""
+        self._runner.change(lambda wish: Wish(wish.base))
+
+    def undo(self) -> None:
+        with self._lock:
+            self._steps -= 1
+
+    def redo(self) -> None:
+        with self._lock:
+            self._steps += 1
+
+    def ask(self, kind: str, act: Callable[[Desk], None]) -> None:
+        """Wish for something that the desk does; of each kind the newest counts."""
+        self._intend(kind, lambda: act(self._desk))
+
+    def toggle(self) -> None:
+        with self._lock:
+            self._playback.toggle()
+            self._pace()
+
+    def step(self, steps: int) -> None:
+        with self._lock:
+            self._playback.step(steps)
+            self._pace()
+
+    def scrub(self, time: float) -> None:
+        with self._lock:
+            self._playback.scrub(time)
+            self._pace()
+
+    def set_speed(self, speed: float) -> None:
+        with self._lock:
+            self._playback.speed = speed
+            self._pace()
+
+    def set_driving(self, on: bool) -> None:
+        """Drive on and on with the present parameters, or show their run."""
+        with self._lock:
+            self._driving, self._playback.playing = on, True
+            self._playback.look_back(0.0, 0.0)  # what was shown before has no time in common with what comes
+            self._pace()
+
+    def toggle_driving(self) -> None:
+        self.set_driving(not self._driving)
+
+    def restart_drive(self) -> None:
+        """Drive from rest."""
+        with self._lock:
+            if self._driving:
+                self._playback.playing = True
+                self._pace(anew=True)
+
+    def set_in_view(self, in_view: bool) -> None:
+        """A page in the background stands still."""
+        with self._lock:
+            self._in_view = in_view
+            self._pace()
+
+    def set_in_front(self, tabs: frozenset[str]) -> None:
+        """Only the tabs that are seen keep up with a drag."""
+        self._intend("front", lambda: self._window.set_in_front(tabs))
+        self._wake.set()
+
+    def _pace(self, anew: bool = False) -> None:
+        """Tell the runner how fast to drive, if at all. Under the lock."""
+        speed = self._playback.speed if self._playback.playing and self._in_view else 0.0
+        self._runner.drive(speed if self._driving else None, anew)
+
+    def set_view(self, view: str) -> None:
+        self._intend("view", lambda: self._window.scene.set_view(view))
+
+    def pick_wheel(self, wheel: int | None) -> None:
+        self._intend("wheel", lambda: self._window.pick_wheel(wheel))
+
+    def redraw_spectrum(self) -> None:
+        self._intend("spectrum", lambda: self._window.redraw_spectrum())
+
+    def show_mode(self) -> None:
+        """Show what the spectrum's tab says instead of the run, which stands still meanwhile."""
+        with self._lock:
+            if not self._driving:
+                self._playback.playing = False
+        self._intend("mode", lambda: self._window.show_mode())
+
+    def set_switch(self, switch: str, on: bool | float) -> None:
+        self._intend(switch, lambda: self._window.set_switch(switch, on))
+
+    def toggle_switch(self, switch: str) -> None:
+        self._intend(switch, lambda: self._window.toggle_switch(switch))
+
+    def set_dark(self, dark: bool) -> None:
+        self.ask("dark", lambda desk: desk.set_dark(dark))
+
+    def prefer_dark(self, dark: bool) -> None:
+        """The look that the browser is set to."""
+        self.ask("preference", lambda desk: desk.prefer_dark(dark))
+
+    def export(self, what: str) -> None:
+        """Wish for a download: a key of the porter's."""
+        self._intend("export", lambda: self._export(what))
+
+    def cancel_export(self) -> None:
+        self._porter.stop()
+
+    def upload_configuration(self, name: str, content: bytes) -> None:
+        self._intend("configuration", lambda: self._porter.take_configuration(name, content))
+
+    def upload_run(self, name: str, content: bytes) -> None:
+        self._intend("upload", lambda: self._porter.take_run(name, content))
+
+    def upload_profile(self, name: str, content: bytes) -> None:
+        self._intend("profile", lambda: self._porter.take_profile(name, content))
+
+    def add_to_road(self, road_type: str) -> None:
+        self._intend("road", lambda: self._desk.change_road(lambda config: with_part(config, road_type)))
+
+    def take_from_road(self) -> None:
+        self._intend("road", lambda: self._desk.change_road(without_last))
+
+    def edit_yaml(self) -> None:
+        self._intend("yaml", self._edit_yaml)
+
+    @property
+    def shown(self) -> Trajectory | None:
+        """The run, or the latest stretch of the drive, that is shown."""
+        match self._good:
+            case Finished(_, run):
+                return run
+            case Driven(_, state):
+                return state.past
+        return None
+
+    def show_now(self, act: Callable[[], None]) -> None:
+        """Have the view do something, and wait until it is done. For errands only."""
+        done = threading.Event()
+
+        def do() -> None:
+            act()
+            done.set()
+
+        self._intend("errand", do)
+        self._wake.set()
+        done.wait(SEEN_WITHIN)
+
+    def seek(self, time: float) -> None:
+        """Show a time of the run, and wait until it is seen. For errands only."""
+        self.scrub(time)
+        self.show_now(lambda: self._window.draw(time))
+
+    def fail(self, error: Exception) -> None:
+        """Log an error and tell the user."""
+        text, now = f"{type(error).__name__}: {error}", monotonic()
+        if self._last_error[0] != text or now - self._last_error[1] > SAME_ERROR:
+            self._last_error = (text, now)
+            log.error("in a session", exc_info=error)
+            self._intend("error", lambda: self._window.report_error(error))
+
+    def close(self) -> None:
+        """End all threads. Waits for them, but not long for a browser that still draws a picture."""
+        self._closed.set()
+        self._wake.set()
+        self._runner.close()
+        self._porter.close()
+        self._thread.join()
+
+    def _intend(self, kind: str, act: Callable[[], None]) -> None:
+        with self._lock:
+            self._intents[kind] = act
+
+    # ── What is seen: on the view's thread from here on ──
+
+    def _show(self) -> None:
+        frame = 1 / VIEW_RATE
+        before = next_text = monotonic()
+        while not self._closed.is_set():
+            now = monotonic()
+            elapsed, before = now - before, now
+            with_text = now >= next_text
+            if with_text:
+                next_text = now + 1 / TEXT_RATE
+            for outcome in self._runner.take():
+                self._attempt(partial(self._take, outcome))
+            self._attempt(partial(self._draw, elapsed, with_text))
+            self._wake.wait(max(before + frame - monotonic(), 0.0))
+            self._wake.clear()
+
+    def _attempt(self, act: Callable[[], None]) -> None:
+        try:
+            act()
+        except Exception as error:
+            self.fail(error)
+
+    def _take(self, outcome: Outcome) -> None:
+        """Show a run, or keep a refusal for when the user has finished typing."""
+        match outcome:
+            case Finished(wish, run):
+                with self._lock:
+                    self._refused = None
+                    self._playback.fit(float(run.t[-1]) if len(run.t) else 0.0)
+                    time = self._playback.time
+                self._good, self._shown_at = outcome, monotonic()
+                self._window.show_run(outcome, time, settled=self._runner.latest.number == wish.number)
+                self._desk.finished(outcome, monotonic())
+            case Driven(wish, state):
+                with self._lock:
+                    if self._refused is not None and wish.number > self._refused.wish.number:
+                        self._refused = None
+                    if self._driving:
+                        self._playback.look_back(float(state.past.t[0]), state.time)
+                    time = self._playback.time
+                self._good = outcome
+                self._window.show_drive(outcome, time, settled=self._runner.latest.number == wish.number)
+                self._desk.driven(wish, monotonic())
+            case Refused():
+                with self._lock:
+                    self._refused, self._refuse_at = outcome, monotonic() + REFUSAL_DELAY
+            case Failed():
+                self._window.report_failure(outcome)
+
+    def _draw(self, elapsed: float, with_text: bool) -> None:
+        with self._lock:
+            intents, self._intents = self._intents, {}
+            steps, self._steps = self._steps, 0
+            driving = self._driving
+            if driving or not self._in_view:
+                elapsed = 0.0
+            if elapsed:
+                self._playback.advance(elapsed)
+            playback = replace(self._playback)
+            refused = self._refused if monotonic() >= self._refuse_at else None
+            if refused is not None:
+                self._refused = None
+        for act in intents.values():
+            self._attempt(act)
+        if steps:
+            self._desk.go(steps)
+        if refused is not None and self._good is not None and self._runner.withdraw(refused.wish, self._good.wish):
+            self._window.refuse(refused, self._good.trajectory.config)
+        self._window.draw(playback.time, elapsed)
+        if not with_text:
+            return
+        now = monotonic()
+        if now >= self._told_at + 1 / DRAG_TEXT_RATE or now >= self._shown_at + DRAG_PAUSE:
+            self._told_at = now
+            self._window.show_time(playback, driving)
+            self._window.show_status(self._runner.under_way())
+            self._window.fit_page()
+        self._desk.tick(now)
+
+    def _export(self, what: str) -> None:
+        run, exports = self.shown, self._window.exports
+        if self._good is None or run is None or not len(run.t):
+            return
+        with self._lock:
+            time, playing = self._playback.time, self._playback.playing
+        self._porter.send(
+            what,
+            Order(
+                wish=self._good.wish,
+                run=run,
+                baseline=self._desk.baseline,
+                size=exports.size,
+                transparent=exports.transparent,
+                background=self._window.background,
+                dark=self._window.dark,
+                time=time,
+                playing=playing,
+                drive=self._good.state if isinstance(self._good, Driven) else None,
+            ),
+        )
+
+    def _edit_yaml(self) -> None:
+        run = self.shown
+        if run is not None:
+            self._window.exports.edit_yaml(run.config)

@@ -1,0 +1,323 @@
+"""What goes out of one tab as downloads, and what comes in as uploads: on a thread of its own (background.py)."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+import viser
+
+from app.files.pictures import (
+    FIGURE_SIZE,
+    MOVIE_LENGTH,
+    MOVIE_RATE,
+    NoPictureError,
+    file_name,
+    movie_frames,
+    take_picture,
+)
+from app.files.uploads import configuration, profile_changes, run_from
+from app.panels.controls import shown_text
+from app.panels.files_panel import PICTURE
+from app.runs.drive import DriveState
+from app.runs.history import run_name
+from app.runs.runner import Simulate, Wish
+from app.runs.storage import State, state_from
+from app.session.background import Errands
+from model.config.config import Config, ConfigError, dump_config
+from model.config.parameters import PARAMETER
+from model.simulation.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from app.session.workspace import Desk
+
+AT_REST = ("figure.png", "figure.svg", "replay", "movie")  # what shows one stretch of a drive and takes a while
+PAUSE_FIRST = "Pause the drive first (Space): what is shown then, its last seconds, is what you take home."
+NO_RUN = "A drive cannot be repeated from a file as a run can. Take CSV, or change from Drive to Run first."
+STORED = "trackride"  # key in the browser's storage
+STORAGE_PATIENCE = 60.0  # s in which a browser says what it has stored; afterwards that is overwritten
+
+log = logging.getLogger("trackride")
+
+
+class Office(Protocol):
+    """What the porter asks of the session, from any thread."""
+
+    @property
+    def shown(self) -> Trajectory | None: ...
+
+    def ask(self, kind: str, act: Callable[[Desk], None]) -> None: ...
+
+    def show_now(self, act: Callable[[], None]) -> None: ...
+
+    def seek(self, time: float) -> None: ...
+
+    def toggle(self) -> None: ...
+
+    def fail(self, error: Exception) -> None: ...
+
+
+class Front(Protocol):
+    """What the porter tells the user: app.session.window.Window, on the thread that draws only."""
+
+    def say(self, title: str, body: str) -> None: ...
+
+    def show_progress(self, doing: str) -> None: ...
+
+    def show_faults(self, title: str, faults: ConfigError) -> None: ...
+
+    def show_surroundings(self, on: bool) -> None: ...
+
+
+@dataclass(frozen=True)
+class Order:
+    """What is exported, as it was when the user asked for it."""
+
+    wish: Wish
+    run: Trajectory
+    baseline: Trajectory | None
+    size: tuple[int, int]  # px, of a picture
+    transparent: bool
+    background: str  # CSS
+    dark: bool
+    time: float  # where in the run the playback is, s
+    playing: bool
+    drive: DriveState | None  # of which `run` is the past
+
+    def name(self, detail: str, suffix: str) -> str:
+        """Of a file."""
+        stretch = f"{detail} {self.stretch}".strip()
+        return file_name(self.run.config, self.wish.base.name, self.wish.changes, stretch, suffix)
+
+    @property
+    def title(self) -> str:
+        """Of a page: what was run, and what was changed."""
+        name = run_name(self.wish.base, self.run.config)
+        whole = name if name == self.wish.base.name else f"{self.wish.base.name}: {name}"
+        return f"{whole}, {self.stretch}" if self.stretch else whole
+
+    @property
+    def stretch(self) -> str:
+        """Which part of a drive it is; empty for a run."""
+        return "" if self.drive is None else f"drive {self.run.t[0]:.0f}–{self.run.t[-1]:.0f} s"
+
+    @property
+    def refusal(self) -> Mapping[str, str]:
+        """What cannot be made of it, and why."""
+        if self.drive is None:
+            return {}
+        return {"run.npz": NO_RUN} | ({} if self.drive.stands else dict.fromkeys(AT_REST, PAUSE_FIRST))
+
+
+class StoppedError(Exception):
+    """Nothing is made; the message says why."""
+
+
+class Porter:
+    """Its public methods are for the thread that draws."""
+
+    def __init__(
+        self,
+        client: viser.ClientHandle,
+        office: Office,
+        front: Front,
+        simulate: Simulate,
+        intend: Callable[[str, Callable[[], None]], None],
+    ) -> None:
+        """intend: has the thread that draws do something, the newest of each kind."""
+        self._client, self._office, self._front, self._intend = client, office, front, intend
+        self._simulate = simulate
+        self._errands, self._memory = Errands(office.fail), Errands(office.fail)
+        self._makers: dict[str, tuple[str, Callable[[Order], tuple[str, bytes]]]] = {
+            PICTURE: ("", self._picture),
+            "figure.png": ("Drawing the figure…", partial(self._figure, ".png")),
+            "figure.svg": ("Drawing the figure…", partial(self._figure, ".svg")),
+            "run.csv": ("", partial(self._run, ".csv")),
+            "run.npz": ("", partial(self._run, ".npz")),
+            "yaml": ("", self._yaml),
+            "replay": ("Recording the replay…", self._replay),
+            "movie": ("Filming…", self._movie),
+        }
+
+    def send(self, what: str, order: Order) -> None:
+        """Make what is asked for, and let the browser download it."""
+        if what in order.refusal:
+            self._front.say("Nothing was downloaded", order.refusal[what])
+            return
+        doing, make = self._makers[what]
+        self._begin(partial(self._deliver, doing, partial(make, order)))
+
+    def take_configuration(self, name: str, content: bytes) -> None:
+        """Wish for what an uploaded file says."""
+        try:
+            config = configuration(name, content)
+        except ConfigError as error:
+            self._front.show_faults(f"{name[:60]} cannot be used", error)
+        else:
+            self._office.ask("configuration", lambda desk: desk.use(config))
+
+    def take_profile(self, name: str, content: bytes) -> None:
+        """Make the road of an uploaded CSV file."""
+        self._begin(partial(self._measure, name, content))
+
+    def take_run(self, name: str, content: bytes) -> None:
+        """Make the baseline of an uploaded file."""
+        self._begin(partial(self._unpack, name, content))
+
+    def stop(self) -> None:
+        """Make no more of what is under way."""
+        self._errands.stop()
+
+    def close(self) -> None:
+        """End the threads, unless a browser that still draws holds one."""
+        self._errands.close()
+        self._memory.close()
+
+    def remember(self, state: str) -> None:
+        """Have the browser store a text until its next visit."""
+        self._client.local_storage.set_item(STORED, state)
+
+    def recollect(self) -> None:
+        """Go on where this browser was at its last visit, as soon as it says where."""
+        self._memory.start(self._ask_browser)
+
+    def run_again(self, config: Config) -> None:
+        """Make a run for the desk of which only the configuration is left, unless one is being made."""
+        self._memory.start(partial(self._run_again, config))
+
+    def _begin(self, job: Callable[[], None]) -> None:
+        if not self._errands.start(job):
+            self._front.say("One at a time", "The last file is still being made. Cancel it, or wait a moment.")
+
+    def _say(self, title: str, body: str) -> None:
+        self._intend("said", lambda: self._front.say(title, body))
+
+    def _tell(self, doing: str) -> None:
+        self._intend("progress", lambda: self._front.show_progress(doing))
+
+    # ── Out: on the errands' thread ──
+
+    def _deliver(self, doing: str, make: Callable[[], tuple[str, bytes]]) -> None:
+        if doing:
+            self._tell(doing)
+        try:
+            self._client.send_file_download(*make(), save_immediately=True)
+        except NoPictureError as error:
+            log.info("no picture: %s", error)
+            self._say("No picture", str(error))
+        except StoppedError as error:
+            self._say("Nothing was downloaded", str(error))
+        finally:
+            if doing:
+                self._tell("")
+
+    def _picture(self, order: Order) -> tuple[str, bytes]:
+        if order.transparent:
+            self._office.show_now(lambda: self._front.show_surroundings(False))
+        try:
+            picture = take_picture(self._client, *order.size, None if order.transparent else order.background)
+        finally:
+            if order.transparent:
+                self._intend("surroundings", lambda: self._front.show_surroundings(True))
+        return order.name("x".join(map(str, order.size)), ".png"), picture
+
+    def _figure(self, suffix: str, order: Order) -> tuple[str, bytes]:
+        from app.reports.sheet import stamped_figure  # matplotlib takes a second
+
+        try:
+            picture = take_picture(self._client, *FIGURE_SIZE, "white")
+        except NoPictureError:
+            if order.drive is not None:
+                raise  # a vehicle drawn from its side would stand on the road of a run
+            picture = None
+        page = stamped_figure(order.run, order.baseline, picture, order.title, suffix, order.time)
+        return order.name("figure", suffix), page
+
+    def _run(self, suffix: str, order: Order) -> tuple[str, bytes]:
+        run = order.run if order.drive is None else order.drive.past_from_start
+        return order.name("", suffix), run.to_bytes(suffix)
+
+    def _yaml(self, order: Order) -> tuple[str, bytes]:
+        return order.name("", ".yaml"), dump_config(order.run.config).encode()
+
+    def _replay(self, order: Order) -> tuple[str, bytes]:
+        from app.files.replay import replay_html
+
+        road = None if order.drive is None else order.drive.road
+        page = replay_html(
+            order.run, order.baseline, order.title, order.dark, should_stop=self._errands.stopped, road=road
+        )
+        if page is None:
+            raise StoppedError("The replay was cancelled.")
+        return order.name("replay", ".html"), page.encode()
+
+    def _movie(self, order: Order) -> tuple[str, bytes]:
+        from app.files.movie import movie
+
+        first, last = float(order.run.t[0]), float(order.run.t[-1])
+        start = max(min(order.time, last - MOVIE_LENGTH), first)
+        try:
+            film, suffix = movie(self._watched(order.run, start, min(start + MOVIE_LENGTH, last)), MOVIE_RATE)
+        finally:
+            self._office.seek(order.time)
+            if order.playing:
+                self._office.toggle()
+        return order.name("", suffix), film
+
+    def _watched(self, run: Trajectory, start: float, end: float) -> Iterator[np.ndarray]:
+        """The frames of a movie, as long as the run is shown and the user wants them."""
+        frames = movie_frames(self._client, self._office.seek, start, end)
+        for number, frame in enumerate(frames, 1):
+            if self._errands.stopped():
+                raise StoppedError("The movie was cancelled.")
+            if self._office.shown is not run:
+                raise StoppedError("The run changed while it was filmed. Leave it alone until the movie is done.")
+            self._tell(f"Filming… {100 * number * (1 / MOVIE_RATE) / (end - start):.0f} %")
+            yield frame
+
+    # ── In: on the errands' thread ──
+
+    def _ask_browser(self) -> None:
+        state: State | None = None
+        try:
+            stored = self._client.local_storage.get_item(STORED, timeout=STORAGE_PATIENCE)
+            state = None if stored is None else state_from(stored)
+        except (TimeoutError, RuntimeError, ValueError) as error:
+            log.info("nothing from the browser's storage: %s", error)
+        self._office.ask("restore", lambda desk: desk.restore(state))
+
+    def _run_again(self, config: Config) -> None:
+        run: Trajectory | None = None
+        try:
+            run = self._simulate(config, on_progress=lambda part: None, should_stop=self._memory.stopped)
+        finally:
+            if not self._memory.stopped():
+                self._office.ask("again", lambda desk: desk.made_again(config, run))
+
+    def _measure(self, name: str, content: bytes) -> None:
+        run = self._office.shown
+        if run is None:
+            return
+        try:
+            changes = profile_changes(name, content, run.config)
+        except ConfigError as error:
+            faults = error
+            self._intend("faults", lambda: self._front.show_faults(f"{name[:60]} cannot be used", faults))
+            return
+        self._office.ask("profile", lambda desk: desk.change_road(lambda config: changes))
+        self._say("Another road", f"{name[:60]}: {shown_text(PARAMETER['road.points'], changes['road.points'])}.")
+
+    def _unpack(self, name: str, content: bytes) -> None:
+        try:
+            run = run_from(name, content)
+        except ConfigError as error:
+            faults = error
+            self._intend("faults", lambda: self._front.show_faults(f"{name[:60]} cannot be used", faults))
+        except ValueError as error:
+            self._say("No run", str(error))
+        else:
+            self._office.ask("baseline", lambda desk: desk.take_in(run, name.removesuffix(".npz")))

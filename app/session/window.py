@@ -1,0 +1,409 @@
+"""What one browser tab shows. No locks: only the thread that draws (app/session/session.py) changes anything here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from time import monotonic
+from typing import Any, Protocol
+
+import numpy as np
+import viser
+
+from app.format.colours import wheel_palette
+from app.format.load_unit import load_unit
+from app.panels.callbacks import by_user
+from app.panels.controls import Wishes, refusal
+from app.panels.files_panel import Exporter, ExportsPanel
+from app.panels.notifications import Notices
+from app.panels.page_layout import LEFT, Layout, Screen
+from app.panels.page_setup import add_hints, add_page, apply_theme
+from app.panels.parameter_panel import ControlPanel
+from app.panels.playback_panel import PlaybackPanel, Player
+from app.panels.plot_panel import RUNS, PlotPanel
+from app.panels.runs_panel import Keeping, RunsPanel
+from app.panels.shortcuts import Keys, add_keys
+from app.panels.spectrum_panel import Analyst
+from app.panels.status_line import BUSY_DELAY, drive_facts, progress_line, run_line, status_line
+from app.panels.view_panel import Viewer, ViewPanel
+from app.panels.wheel_card import Picker, WheelCard
+from app.runs.drive import DriveState
+from app.runs.playback import Playback
+from app.runs.runner import Driven, Failed, Finished, Refused
+from app.tabs.road_profile import RoadAhead
+from app.view3d.mode_animation import PERIOD, ModeShow
+from model.analysis.ride import WheelState
+from model.config.config import Config, ConfigError
+from model.road.road import Road
+from model.simulation.trajectory import Trajectory
+
+ROAD_EVERY = 0.35  # s between two side views of the road
+FOLDERS = "View", "Export", "Import and presets"
+LAID_OUT_WITHIN = 3.0  # s in which a page says that its panels stand, or else is taken to have them
+
+
+class Scene(Protocol):
+    """The 3-D view: app.view3d.view.Stage, or a stand-in."""
+
+    follow: bool
+    show_arrows: bool
+    show_labels: bool
+
+    show_surroundings: bool
+
+    def show(self, trajectory: Trajectory) -> None: ...
+
+    def show_live(self, recent: Trajectory, road: Road) -> None: ...
+
+    def draw(self, time: float) -> None: ...
+
+    def show_ghost(self, trajectory: Trajectory | None) -> None: ...
+
+    def on_pick(self, act: Callable[[int], None]) -> None: ...
+
+    def wheel_state(self, wheel: int) -> WheelState | None: ...
+
+    def write_loads(self) -> None: ...
+
+    @property
+    def load_top(self) -> float | None: ...
+
+    def set_view(self, name: Any) -> None: ...
+
+    def set_dark(self, dark: bool) -> None: ...
+
+
+class Actions(Wishes, Player, Viewer, Picker, Keeping, Exporter, Analyst, Keys, Protocol):
+    """What the panels ask of the session."""
+
+    def set_in_view(self, in_view: bool) -> None: ...
+
+    def set_in_front(self, tabs: frozenset[str]) -> None: ...
+
+    def prefer_dark(self, dark: bool) -> None: ...
+
+
+class Window:
+    """Panels, plots and 3-D view of one tab."""
+
+    def __init__(
+        self,
+        client: viser.ClientHandle,
+        presets: Mapping[str, Config],
+        preset: str,
+        config: Config,
+        actions: Actions,
+        make_scene: Callable[[viser.ClientHandle, bool], Scene],
+    ) -> None:
+        self._client, self._actions = client, actions
+        self._dark = False  # until the browser has said how it is set
+        self._run: Trajectory | None = None
+        self._baseline: Trajectory | None = None
+        self._drive: DriveState | None = None  # the last of the drive that is shown
+        self._drawn: tuple[int, float] | None = None  # run and time that the 3-D view shows
+        self._to_scene: Trajectory | None = None  # a run that the 3-D view has not got yet
+        self._stands_at = monotonic() + LAID_OUT_WITHIN  # when the page has its panels, s
+        self._filled = False  # the page has what is not seen at first
+        self._mode: ModeShow | None = None  # in the run's place
+        self._run_number = 0
+        self._road_due = 0.0  # monotonic s
+        self._road_ahead = RoadAhead()
+        self._notices = Notices(client)
+        self._screen = Screen(client.camera.image_width, client.camera.image_height)
+        layout = self._screen.first()
+        gui = client.gui
+        with client.atomic():
+            apply_theme(gui, self._dark)
+            gui.set_panel_label("Trackride")
+            gui.main_panel.dock_left()
+            gui.main_panel.set_width(LEFT)
+            signs = add_page(gui)
+            signs.in_view.on_update(by_user(lambda event: actions.set_in_view(event.target.value), actions.fail))
+            signs.in_front.on_update(
+                by_user(lambda event: actions.set_in_front(frozenset(event.target.value.split(","))), actions.fail)
+            )
+            signs.night.on_update(by_user(lambda event: actions.prefer_dark(event.target.value), actions.fail))
+            self._controls = ControlPanel(gui, presets, preset, config, actions)
+            with self._controls.middle:
+                self._folders = [gui.add_folder(name, expand_by_default=False) for name in FOLDERS]
+            self._plots_panel = gui.add_panel()
+            self._plots = PlotPanel(client, self._plots_panel, layout.page_height, self._dark, actions)
+            self.runs = RunsPanel(gui, self._plots.runs_tab, actions)
+            self._plots_panel.dock_right()
+            self._player = PlaybackPanel(gui, actions)
+            self._card = WheelCard(gui, actions)
+            self._resize(layout)
+        self.scene = make_scene(client, self._dark)
+        self.scene.on_pick(actions.pick_wheel)
+
+    def _fill(self) -> None:
+        """Add what is not seen at first: half of the page's work, and the rest is there sooner without it."""
+        gui, actions = self._client.gui, self._actions
+        view, out, into = self._folders
+        with self._client.atomic():
+            self._controls.fill()
+            self._view = ViewPanel(gui, view, self._dark, actions)
+            self.exports = ExportsPanel(gui, out, into, actions)
+            add_keys(gui, actions)
+            add_hints(gui)
+        self._filled = True
+
+    # ── Runs ──
+
+    def show_run(self, done: Finished, time: float, *, settled: bool) -> None:
+        """Show a finished run at `time`, s. settled: no newer wish is on its way, so that the controls may follow."""
+        self._leave_mode()
+        run = done.trajectory
+        self._run, self._run_number, self._drive = run, done.wish.number, None
+        self._plot(time)
+        self._to_scene, self._drawn = run, None
+        if settled:
+            self._controls.show(run.config, touched=done.wish.touched)
+        if run.complete:
+            self._notices.forget("diverged")
+        else:
+            body = f"{run.status[0].upper()}{run.status[1:]}. The plots show the run up to there. {run.advice}"
+            self._notices.show("diverged", "The run did not come to its end", body, "orange", stays=True)
+        self._notices.forget("refused")
+
+    def show_drive(self, driven: Driven, time: float, *, settled: bool) -> None:
+        """Show how far the drive has come, or where in its past the user is, at `time`, s.
+
+        The plots follow only when there is something new for them.
+        """
+        self._leave_mode()
+        before, self._drive = self._drive, driven.state
+        state = driven.state
+        if before is None or before.past is not state.past:
+            self._run = state.past
+            self._plot(time)
+        self._to_scene = None
+        self.scene.show_live(state.recent, state.road)
+        self.scene.draw(time)
+        self._drawn = (self._run_number, time)
+        if settled and (before is None or before.config != state.config):
+            self._controls.show(state.config, touched=driven.wish.touched)
+        if state.ended:
+            body = f"{state.ended[0].upper()}{state.ended[1:]}. {state.advice} Then press Restart."
+            self._notices.show("diverged", "The drive came to an end", body, "orange", stays=True)
+        else:
+            self._notices.forget("diverged")
+
+    def show_baseline(self, baseline: Trajectory | None) -> None:
+        """Compare with this run from now on, or with None no more."""
+        self._end_mode()
+        self._baseline = baseline
+        if self._run is not None:
+            self._plot(self._plots.time)
+        self.scene.show_ghost(baseline)
+
+    def show_mode(self) -> None:
+        """Show the mode that is chosen instead of the run, until the run moves on or another one comes."""
+        mode, run = self._plots.spectrum.chosen, self._run
+        if mode is None or run is None or self._drive is not None or not len(run.t):
+            self._end_mode()
+            return
+        x = float(np.interp(self._plots.time, run.t, run.q[:, run.system.chassis, 0]))
+        self._mode, self._to_scene = ModeShow(run.config, mode, x), None
+        self.scene.show(self._mode.swing)
+        self.scene.show_ghost(self._mode.rest)
+
+    def _end_mode(self) -> None:
+        """Show the run again."""
+        if self._mode is not None and self._run is not None:
+            self._leave_mode()
+            self.scene.show(self._run)
+
+    def _leave_mode(self) -> None:
+        """Make ready for something else to be shown."""
+        if self._mode is not None:
+            self._mode, self._drawn = None, None
+            self.scene.show_ghost(self._baseline)
+            self._plots.spectrum.choose_run()
+
+    def redraw_spectrum(self) -> None:
+        self._plots.redraw_spectrum()
+
+    def show_presets(self, presets: Mapping[str, Config], chosen: str) -> None:
+        """Offer these presets, `chosen` as the one that is used."""
+        self._controls.offer(presets, chosen)
+
+    def refuse(self, refused: Refused, instead: Config) -> None:
+        """Say what is wrong with a wish, and go back to the configuration that was good."""
+        body = " ".join(refusal(fault, refused.wish.changes.get(fault.path), instead) for fault in refused.faults)
+        self._notices.show("refused", "Not possible", body, "red")
+        self._controls.show(instead)
+
+    def show_value(self, key: str, value: Any) -> None:
+        """Move a control."""
+        self._controls[key].show(value)
+
+    def was_moved_to_end(self, key: str, wished: Any) -> bool:
+        """Whether a slider stands at its end because the page moved it there from the value wished for, beyond it."""
+        return self._controls[key].was_moved_to_end(wished)
+
+    def report_failure(self, failed: Failed) -> None:
+        self._notices.show("refused", "No run", failed.message, "red")
+
+    def show_status(self, under_way: tuple[int, float, float] | None) -> None:
+        """Say which run is shown, or how far the next is (number, part done, seconds so far)."""
+        if self._drive is not None:
+            self._controls.status.content = status_line("Drive", drive_facts(self._drive))
+        elif self._mode is not None:
+            mode = self._mode.mode
+            facts = f"{mode.frequency:.3g} Hz, shown at {1 / PERIOD:g} Hz · Play: the run"
+            self._controls.status.content = status_line(mode.name, facts)
+        elif under_way is not None and (under_way[2] > BUSY_DELAY or self._run is None):
+            self._controls.status.content = progress_line(*under_way)
+        elif self._run is not None:
+            self._controls.status.content = run_line(self._run_number, self._run)
+
+    # ── Time ──
+
+    def draw(self, time: float, elapsed: float = 0.0) -> None:
+        """The 3-D view at a time of the run, s, `elapsed` s of real time after it was drawn last.
+
+        Of a drive that goes on, each instant is drawn as it comes. A page that is still laying out its panels is not
+        given anything more yet.
+        """
+        if monotonic() < self._stands_at:
+            return
+        if not self._filled:
+            self._fill()
+        if self._to_scene is not None:
+            self.scene.show(self._to_scene)
+            self._to_scene = None
+        if self._mode is not None:
+            if self._mode.since is None:
+                self._mode.since = time
+            if self._mode.since == time:
+                if elapsed:
+                    self.scene.draw(self._mode.move_on(elapsed))
+                return
+            self._end_mode()
+        goes_on = self._drive is not None and not self._drive.stands
+        if not goes_on and self._run is not None and self._drawn != (self._run_number, time):
+            self.scene.draw(time)
+            self._drawn = (self._run_number, time)
+
+    def show_time(self, playback: Playback, driving: bool) -> None:
+        """Player and time cursors."""
+        if driving:
+            self._player.show_drive(playback, self._drive)
+        else:
+            self._player.show(playback)
+        if self._drive is None or self._drive.stands:
+            self._plots.point_at(playback.time)
+        self._plots.settle()
+        self.scene.write_loads()
+        self._show_wheel()
+        self._show_road(playback.time)
+        if self._filled and self._run is not None:
+            self._view.show_load_scale(self.scene.load_top, load_unit(self._run.system))
+
+    def _show_road(self, time: float) -> None:
+        """The side view of the road about the vehicle at a time of the run or drive, s.
+
+        A new picture is work for the page, which has curves to draw meanwhile: a few times a second are enough.
+        """
+        now = monotonic()
+        if now < self._road_due:
+            return
+        self._road_due = now + ROAD_EVERY
+        if self._drive is not None:
+            view = self._road_ahead.of_drive(self._drive.recent, self._drive.road, time)
+        elif self._run is not None and len(self._run.t):
+            view = self._road_ahead.of_run(self._run, time)
+        else:
+            return
+        if self._controls.road_view.content != view:
+            self._controls.road_view.content = view
+
+    # ── Looks ──
+
+    def set_in_front(self, tabs: frozenset[str]) -> None:
+        """Tell which tabs of the plots are seen, and so that the page stands."""
+        self._stands_at = 0.0
+        self._plots.set_in_front(tabs)
+
+    @property
+    def runs_in_front(self) -> bool:
+        """Whether the tab of the runs is seen."""
+        return RUNS in self._plots.in_front
+
+    def fit_page(self) -> None:
+        """Sizes of the panels, when the page's has changed."""
+        camera = self._client.camera
+        layout = self._screen.update(camera.image_width, camera.image_height)
+        if layout is not None:
+            self._resize(layout)
+
+    def set_dark(self, dark: bool) -> None:
+        self._dark = dark
+        if self._filled:
+            self._view.show_dark(dark)
+        apply_theme(self._client.gui, dark)
+        self._plots.set_dark(dark)
+        self.scene.set_dark(dark)
+
+    def pick_wheel(self, wheel: int | None) -> None:
+        """Show a wheel's card and its curve alone; None, or the wheel that is picked already: no wheel's."""
+        self._plots.single_out(self._card.pick(wheel))
+        self._show_wheel()
+
+    def _show_wheel(self) -> None:
+        wheel = self._card.wheel
+        state = self.scene.wheel_state(wheel) if wheel is not None else None
+        if wheel is not None and state is not None and self._run is not None:
+            palette = wheel_palette(self._run.system.n, self._run.system.m, self._dark)
+            self._card.show(state, palette.wheels[wheel], load_unit(self._run.system))
+        elif wheel is not None:
+            self.pick_wheel(None)
+
+    def set_switch(self, switch: str, on: bool | float) -> None:
+        """Turn something of the 3-D view on or off, or set its size."""
+        setattr(self.scene, switch, on)
+        self._drawn = None
+
+    def toggle_switch(self, switch: str) -> None:
+        """Turn a switch of the 3-D view over, and its checkbox."""
+        self.set_switch(switch, self._view.toggle(switch))
+
+    def show_surroundings(self, on: bool) -> None:
+        """Sky and ground."""
+        self.scene.show_surroundings = on
+
+    @property
+    def dark(self) -> bool:
+        return self._dark
+
+    @property
+    def background(self) -> str:
+        """Colour behind the scene in pictures."""
+        return "#1a1b1e" if self._dark else "#ffffff"
+
+    def report_error(self, error: Exception) -> None:
+        text = str(error) or type(error).__name__
+        self._notices.show("error", "Something went wrong", f"{text} (details are in the terminal).", "red")
+
+    def say(self, title: str, body: str) -> None:
+        self._notices.show("said", title, body, "blue")
+
+    def show_faults(self, title: str, faults: ConfigError) -> None:
+        """All that is wrong with a configuration from outside."""
+        self.exports.show_faults(title, faults)
+
+    def show_progress(self, doing: str) -> None:
+        """What is being made for a download; empty: nothing."""
+        self._notices.progress(doing)
+
+    def _resize(self, layout: Layout) -> None:
+        self._plots_panel.set_width(layout.right)
+        self._plots.set_page_height(layout.page_height)
+        self._player.place(layout.player_x, layout.player_width)
+        self._card.place(layout.player_x, layout.player_width)
+
+    def _plot(self, time: float) -> None:
+        assert self._run is not None
+        drive = self._drive
+        road = drive.road if drive is not None and drive.stands else None
+        self._plots.show(self._run, self._baseline, time, driving=drive is not None, road=road)

@@ -1,0 +1,350 @@
+"""What the user of one tab keeps at hand: steps back and forth, runs, the baseline, presets of their own.
+
+Only the thread that draws (app/session/session.py) uses it. What is to outlast the page goes to the browser's storage.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any, Protocol
+
+from app.runs.history import REST, Changes, Kept, Runs, first_wish, run_name, same
+from app.runs.runner import Finished, Wish
+from app.runs.storage import PRESETS, State, state_text
+from app.session.window import Window
+from model.config.config import Config, ConfigError
+from model.simulation.trajectory import Trajectory
+
+COMPARE_EVERY = 0.3  # s from one table of figures to the next while runs follow each other and the table is seen…
+CALM = 0.3  # s … or without another run when it is not
+
+
+class Wishing(Protocol):
+    """What the desk asks of the runner."""
+
+    @property
+    def latest(self) -> Wish: ...
+
+    def change(self, update: Callable[[Wish], Wish]) -> None: ...
+
+
+class Helper(Protocol):
+    """What the desk asks of the porter; neither blocks."""
+
+    def remember(self, state: str) -> None: ...
+
+    def run_again(self, config: Config) -> None: ...
+
+
+class Desk:
+    """Shows what it keeps in the window, and wishes for runs."""
+
+    def __init__(self, window: Window, runner: Wishing, presets: Mapping[str, Config], helper: Helper) -> None:
+        """presets: name -> configuration."""
+        self._window, self._runner, self._helper = window, runner, helper
+        self._presets = dict(presets)
+        self._own: list[str] = []  # names of the user's presets, oldest first
+        self._start = runner.latest
+        self._started_with = self._start.config()
+        self._changes = Changes(self._start)
+        self._runs = Runs()
+        self._good: Finished | None = None  # the run that is shown; None: a drive, or nothing yet
+        self._good_at = 0.0  # when it came, s
+        self._rested = False  # the user has rested on it
+        self._kept: Kept | None = None  # the same, once it is kept
+        self._before_drive = ""  # name of the run whose figures stay while a drive is shown
+        self._baseline: Kept | None = None
+        self._compared = self._named = True  # the table of figures, and the name, are those of the run that is shown
+        self._compared_at = 0.0  # when it was made, s
+        self._news_at: float | None = None  # when something came up that the browser is to store, s; None: nothing
+        self._stored = ""
+        self._dark: bool | None = None  # the look that the user has chosen
+        self._prefers_dark = False
+        self._restored = False  # the browser has said what it has, and may be told anew
+
+    @property
+    def presets(self) -> Mapping[str, Config]:
+        """By name; may be read on any thread."""
+        return self._presets
+
+    @property
+    def baseline(self) -> Trajectory | None:
+        """The run that others are compared with."""
+        return None if self._baseline is None else self._baseline.run
+
+    # ── What happens ──
+
+    def finished(self, done: Finished, now: float) -> None:
+        """A run is shown, at `now`, s."""
+        fresh = self._good is None or not same(self._good.wish, done.wish)
+        self._good, self._good_at, self._rested, self._before_drive = done, now, False, ""
+        self._complete(done.trajectory)
+        self._kept = self._runs.find(done.trajectory.config)
+        self._compared = False
+        self._named &= not fresh
+        self._came_true(done.wish, now)
+
+    def driven(self, wish: Wish, now: float) -> None:
+        """A drive is shown, at `now`, s."""
+        if self._good is not None:
+            self._before_drive, self._good, self._kept = self._name, None, None
+            self._show()
+        self._came_true(wish, now)
+
+    def set_dark(self, dark: bool) -> None:
+        """Change the look of the page."""
+        self._dark = dark
+        self._look()
+        self._news_at = 0.0
+
+    def prefer_dark(self, dark: bool) -> None:
+        """Say how the browser is set: the look of the page until the user chooses another."""
+        self._prefers_dark = dark
+        if self._restored:
+            self._look()
+
+    def _look(self) -> None:
+        dark = self._prefers_dark if self._dark is None else self._dark
+        if dark != self._window.dark:
+            self._window.set_dark(dark)
+
+    def tick(self, now: float) -> None:
+        """Do what waits for a moment of rest; `now`, s."""
+        if self._baseline is not None and self._baseline.run is None:
+            self._helper.run_again(self._baseline.config)
+        if self._good is not None and len(self._good.trajectory.t):
+            seen = self._window.runs_in_front and now - self._compared_at >= COMPARE_EVERY
+            rests = not self._rested and now - self._good_at >= REST and self._settled(self._good.wish)
+            if seen or rests or now - self._good_at >= CALM:
+                self._tell(now)
+            if rests:
+                self._rested = True
+                self._keep(self._good)
+        if self._restored and self._news_at is not None and now - self._news_at >= REST:
+            self._remember()
+
+    def _came_true(self, wish: Wish, now: float) -> None:
+        if self._settled(wish):
+            if not same(wish, self._changes.present):
+                self._news_at = now
+            self._changes.note(wish, now)
+            self._offer(wish.base)
+
+    def _settled(self, wish: Wish) -> bool:
+        """Whether no newer wish is on its way."""
+        return self._runner.latest.number == wish.number
+
+    # ── Steps ──
+
+    def go(self, steps: int) -> None:
+        """Undo so many steps when negative, or redo them."""
+        under_way = not same(self._runner.latest, self._changes.present)
+        wish = self._changes.go(steps + 1 if under_way and steps < 0 else steps)
+        if wish is None and under_way and steps < 0:
+            wish = self._changes.present
+        if wish is not None:
+            self._wish(wish)
+        else:
+            self._window.say("Nothing to undo" if steps < 0 else "Nothing to redo", "All parameters stay as they are.")
+
+    # ── Runs and baseline ──
+
+    def pin(self) -> None:
+        """Make the run that is shown the baseline."""
+        if self._good is None or not len(self._good.trajectory.t):
+            self._window.say("Only a run can be pinned", "Change from Drive to Run first.")
+            return
+        self._set_baseline(self._keep(self._good))
+        self._window.say("Baseline pinned", f"{self._name}. Whatever you change now is compared with it.")
+
+    def swap(self) -> None:
+        """Show the baseline, and make what is shown now the baseline."""
+        if self._good is None or self._baseline is None:
+            self._window.say("Nothing to swap", "Pin a run as the baseline (B), then change something.")
+            return
+        other = self._baseline
+        self._set_baseline(self._keep(self._good))
+        self._wish(other.wish)
+
+    def clear(self) -> None:
+        """Compare no more."""
+        self._set_baseline(None)
+
+    def recall(self, number: int) -> None:
+        """Show a run that is kept."""
+        if number in self._runs:
+            self._wish(self._runs[number].wish)
+
+    def compare(self, number: int) -> None:
+        """Make a run that is kept the baseline."""
+        if number in self._runs:
+            self._set_baseline(self._runs[number])
+
+    def delete(self, number: int) -> None:
+        """Keep a run no more; as the baseline it stays."""
+        self._runs.delete(number)
+        if self._kept is not None and self._kept.number == number:
+            self._kept, self._rested = None, True  # not to be kept again at once
+        self._news()
+
+    def rename(self, name: str) -> None:
+        """Name the run that is shown, and keep it."""
+        if self._good is None:
+            return
+        self._kept = self._runs.rename(self._keep(self._good).number, name)
+        if self._baseline is not None and self._baseline.number == self._kept.number:
+            self._baseline = self._kept
+        self._news()
+
+    def take_in(self, run: Trajectory, name: str) -> None:
+        """Keep a run from outside, and make it the baseline."""
+        self._set_baseline(self._runs.keep(Wish(run.config), run, name))
+        self._window.say("Baseline pinned", f"{name}. What is shown is compared with it.")
+
+    def made_again(self, config: Config, run: Trajectory | None) -> None:
+        """The run of a configuration that was kept, or None where there can be none."""
+        if run is not None and len(run.t):
+            self._complete(run)
+        elif self._baseline is not None and self._baseline.config == config:
+            self._window.say("No baseline", f"{self._baseline.name} cannot be run again.")
+            self.clear()
+
+    def _complete(self, run: Trajectory) -> None:
+        """Put a run where only its configuration was left."""
+        self._runs.complete(run)
+        baseline = self._baseline
+        if baseline is not None and baseline.run is None and baseline.config == run.config:
+            self._set_baseline(replace(baseline, run=run))
+
+    def _keep(self, good: Finished) -> Kept:
+        self._kept = self._runs.keep(good.wish, good.trajectory)
+        self._news()
+        return self._kept
+
+    def _set_baseline(self, run: Kept | None) -> None:
+        self._baseline = run
+        self._window.show_baseline(self.baseline)
+        self._compared, self._compared_at = False, 0.0
+        self._news()
+
+    def _news(self) -> None:
+        """Show runs and baseline, and have the browser store them soon."""
+        self._news_at = 0.0
+        self._show()
+
+    @property
+    def _name(self) -> str:
+        """Of the run that is shown."""
+        if self._kept is not None:
+            return self._kept.name
+        return "" if self._good is None else run_name(self._good.wish.base, self._good.trajectory.config)
+
+    def _show(self) -> None:
+        self._window.runs.show(self._runs, self._name, self._kept, self._baseline, self._before_drive)
+
+    def _tell(self, now: float) -> None:
+        """Say of the run that is shown what has not been said yet."""
+        assert self._good is not None
+        if not self._named:
+            self._named = True
+            self._show()
+            self._window.runs.show_name(self._name)
+        if not self._compared:
+            self._window.runs.compare(self._good.trajectory, self.baseline)
+            self._compared, self._compared_at = True, now
+
+    # ── Configurations ──
+
+    def use(self, config: Config) -> None:
+        """Wish for a configuration from outside: for changes to the present preset if it has that one's name."""
+        base = self._runner.latest.base
+        self._wish(first_wish(base, config) if config.name == base.name else Wish(config))
+
+    def change_road(self, changes_of: Callable[[Config], dict[str, Any]]) -> None:
+        """Wish for changes to the road of the latest wish (dotted key -> value), if that is a possible one."""
+
+        def changed(wish: Wish) -> Wish:
+            try:
+                changes = changes_of(wish.config())
+            except ConfigError:  # it will be refused
+                return wish
+            for key, value in changes.items():
+                wish = wish.changed(key, value)
+            return Wish(wish.base, wish.changes)
+
+        self._runner.change(changed)
+
+    def save_preset(self, name: str) -> None:
+        """Make a preset of the configuration that is shown."""
+        if self._good is None:
+            return
+        name = " ".join(name.split())
+        if not name:
+            self._window.say("No name", "Give the preset a name first.")
+            return
+        try:
+            config = self._good.trajectory.config.replace({"name": name})
+        except ConfigError as error:
+            self._window.show_faults("This name cannot be used", error)
+            return
+        for own in self._own:
+            if self._presets[own].name == name:
+                self._presets[own] = config
+        self._offer(config)
+        self._wish(Wish(config))
+        self._news_at = 0.0
+        self._window.say("Preset saved", f"{name} is among the presets of this browser.")
+
+    def _offer(self, base: Config) -> None:
+        """Show this preset as the chosen one, also when it is new."""
+        name = next((name for name, config in self._presets.items() if config == base), "")
+        if not name:
+            name = next(f"own {k}" for k in range(1, PRESETS + 2) if f"own {k}" not in self._presets)
+            self._own.append(name)
+            self._presets[name] = base
+            if len(self._own) > PRESETS:
+                del self._presets[self._own.pop(0)]
+        self._window.show_presets(self._presets, name)
+
+    def _wish(self, wish: Wish) -> None:
+        """Wish for all of it: the controls follow."""
+        self._runner.change(lambda latest: Wish(wish.base, wish.changes))
+
+    # ── From one visit to the next ──
+
+    def restore(self, state: State | None) -> None:
+        """Go on where this browser was at its last visit; None: it does not tell.
+
+        Look, presets and runs are there again in any case; parameters and baseline unless the explorer was started with
+        something else, or the user is at work already.
+        """
+        self._restored = True
+        if state is not None and self._dark is None:
+            self._dark = state.dark
+        self._look()
+        if state is None:
+            return
+        for preset in state.presets:
+            if preset not in self._presets.values():
+                self._offer(preset)
+        self._offer(self._runner.latest.base)
+        for kept in state.runs:
+            self._runs.take_back(kept)
+        self._show()
+        latest = self._runner.latest
+        if state.start != self._started_with or latest.number != self._start.number:
+            return
+        if state.baseline is not None and self._baseline is None:
+            self._set_baseline(self._runs.find(state.baseline.config) or state.baseline)
+        if state.wish is not None and not same(state.wish, latest):
+            self._wish(state.wish)
+            self._window.say("Welcome back", "All parameters are as you left them. Undo leads back to the start.")
+
+    def _remember(self) -> None:
+        self._news_at = None
+        own = [self._presets[name] for name in self._own]
+        stored = state_text(self._started_with, self._changes.present, own, self._runs, self._baseline, self._dark)
+        if stored != self._stored:
+            self._stored = stored
+            self._helper.remember(stored)

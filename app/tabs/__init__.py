@@ -1,0 +1,1 @@
+"""What the tabs beside the plots say, as HTML; no viser."""

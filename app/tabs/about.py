@@ -1,0 +1,123 @@
+"""The About tab: the model's equations with the paper's numbers, and every parameter with symbol and source. Pure."""
+
+from __future__ import annotations
+
+import html
+from functools import cache
+from typing import NamedTuple
+
+from app.format.markup import formula_html, page, words_html
+from app.format.parameters import value_text
+from model.config.parameters import GROUPS, NOTES, PARAMETERS, Parameter
+
+
+class Law(NamedTuple):
+    """A few formulas and what they say."""
+
+    title: str
+    numbers: str  # of the paper's equations
+    formulas: tuple[str, ...]  # as app.format.markup reads them
+    words: str
+
+
+LAWS: tuple[Law, ...] = (
+    Law(
+        "Bodies",
+        "eq. 8",
+        ("q_i = (x_i, y_i, θ_i)",),
+        "One side of the vehicle is a chain of rigid bodies in a plane: hull, road arms, road wheels, and between the "
+        "road wheels imaginary wheels on links, which stand for the track's contact with the ground. x points forward, "
+        "y up; θ turns counter-clockwise.",
+    ),
+    Law(
+        "Suspensions",
+        "eqs. 1–3",
+        (
+            "τ = k_s (θ_i − θ_j) + c_s (θ̇_i − θ̇_j) + τ_0",
+            "τ′ = k_sl (θ_j − θ_l) + c_sl (θ̇_j − θ̇_l) + τ′_0",
+        ),
+        "A torsion bar between hull i and road arm j; another between road arm j and imaginary link l, which presses "
+        "the imaginary wheel to the ground. The preloads τ_0 hold the hull at its height at rest.",
+    ),
+    Law(
+        "Ground, upright",
+        "eq. 4",
+        ("f_n = max(0, z² (k_n + c_n ż))",),
+        "z is how deep a wheel is in the ground, measured at the point of the road nearest to its centre. The ground "
+        "never pulls.",
+    ),
+    Law(
+        "Ground, along the road",
+        "eqs. 5–7",
+        (
+            "f_stick = −(k_t ξ + c_t ṗ)",
+            'f_t = f_stick "limited to" ±μ f_n',
+            "ξ̇ = −(k_t ξ + f_t) / c_t",
+        ),
+        "ṗ is the speed at which the wheel's rim slides over the road, ξ how far the ground has been sheared. A wheel "
+        "sticks until friction gives way.",
+    ),
+    Law(
+        "Joints",
+        "eqs. 10, 13, 14",
+        ("C(q) = 0", "C_q q̇ + C_t = 0", "γ = −(C_q q̇)_q q̇ − 2 C_{qt} q̇ − C_{tt} − 2 α Ċ − β² C"),
+        "Each hinge holds two points together. α and β (Baumgarte) pull them back should rounding drive them apart.",
+    ),
+    Law(
+        "Motion",
+        "eqs. 12, 15",
+        ("M q̈ + C_qᵀ λ = Q", "C_q q̈ = γ"),
+        "Newton's law with the joint forces λ. Both lines are solved together for q̈ and λ, then stepped on in time "
+        "with an error control.",
+    ),
+    Law(
+        "Drive",
+        "section 2.2",
+        ("e = v_ref − ẋ_hull", "F = K_p e + K_i ∫e dt, |F| ≤ F_max"),
+        "Cruise: the torque r F goes to the wheels in proportion to their loads. Prescribed: the hull is pulled along "
+        "at v_ref (eq. 11), which pitches it differently.",
+    ),
+    Law(
+        "Road",
+        "section 5",
+        ("y = A sin(2π (x − x_s) / λ)",),
+        "Waves of amplitude A and length λ, grown over the first stretch ℓ. They are met v/λ times a second.",
+    ),
+)
+SOURCE = (
+    "After Mahalingam and Padmanabhan, “Planar Multi-body Dynamics of a Tracked Vehicle using Imaginary Wheel Model "
+    "for Tracks”, Defence Science Journal. Where the paper leaves a sign or a value open, the Trust tab says how it is "
+    "read."
+)
+
+
+@cache
+def about_html() -> str:
+    """HTML of the whole tab."""
+    laws = "".join(
+        f'<h4>{law.title} <small>{law.numbers}</small></h4><div class="trackride-formula">'
+        f"{'<br>'.join(map(formula_html, law.formulas))}</div><p>{words_html(law.words)}</p>"
+        for law in LAWS
+    )
+    tables = "".join(_group(group) for group in GROUPS if group != NOTES)
+    return page(f"<p>{SOURCE}</p>{laws}<h3>Parameters</h3>{tables}")
+
+
+def _group(group: str) -> str:
+    rows = "".join(_row(parameter) for parameter in PARAMETERS if parameter.group == group)
+    head = "<tr><th>Name</th><th>Symbol</th><th>Default</th><th>From</th></tr>"
+    return f'<h4>{group}</h4><table class="trackride-parameters">{head}{rows}</table>'
+
+
+def _row(parameter: Parameter) -> str:
+    return (
+        f'<tr title="{html.escape(parameter.description)}"><td>{html.escape(parameter.label)}</td>'
+        f"<td>{formula_html(parameter.symbol)}</td><td>{html.escape(_default(parameter))}</td>"
+        f"<td>{html.escape(parameter.source)}</td></tr>"
+    )
+
+
+def _default(parameter: Parameter) -> str:
+    """With its unit; in brackets where it is left out."""
+    text = value_text(parameter, parameter.default)
+    return text if parameter.default is not None or not parameter.shown_unit else f"{text} ({parameter.shown_unit})"

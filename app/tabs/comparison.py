@@ -1,0 +1,84 @@
+"""The figures of a run beside those of its baseline, as HTML. Pure."""
+
+from __future__ import annotations
+
+import html
+import math
+from collections.abc import Sequence
+
+from app.format.load_unit import heading
+from model.analysis.ride import AIR_TIME, LOAD_COEFFICIENT, LOAD_PEAK, LOAD_RMS, TRAVEL, Row
+
+PAIRS = (
+    (LOAD_PEAK, AIR_TIME),
+    (LOAD_RMS, TRAVEL),
+    (LOAD_COEFFICIENT,),
+)  # figures of each wheel side by side in one table
+NOTABLE = 0.5  # %: a smaller change is not coloured
+NONE = "–"
+
+
+def comparison_table(rows: Sequence[Row], compared: bool) -> str:
+    """Tables of all figures: the vehicle's first, then each wheel's. compared: there is a baseline."""
+    whole = [row for row in rows if not row.wheel]
+    wheels = list(dict.fromkeys(row.wheel for row in rows if row.wheel))
+    by_place = {(row.figure, row.wheel): row for row in rows}
+    heads = ("now", "baseline", "change") if compared else ("now",)
+    tables = [_table(["Whole vehicle", *heads], [[_whole_label(row), *cells(row, compared)] for row in whole])]
+    for pair in PAIRS:
+        over = "<tr><th></th>" + "".join(
+            f'<th colspan="{len(heads)}">{html.escape(heading(figure.label, rows))}</th>' for figure in pair
+        )
+        lines = [
+            [
+                f"<td>{html.escape(wheel)}</td>",
+                *(cell for figure in pair for cell in cells(by_place.get((figure.label, wheel)), compared)),
+            ]
+            for wheel in wheels
+        ]
+        tables.append(_table(["Wheel", *heads * len(pair)], lines, over + "</tr>"))
+    return "".join(tables)
+
+
+def _table(heads: Sequence[str], lines: Sequence[Sequence[str]], over: str = "") -> str:
+    head = "<tr>" + "".join(f"<th>{html.escape(text)}</th>" for text in heads) + "</tr>"
+    body = "".join(f"<tr>{''.join(cells)}</tr>" for cells in lines)
+    kind = "trackride-figures by-wheel" if over else "trackride-figures"
+    return f'<table class="{kind}">{over}{head}{body}</table>'
+
+
+def _whole_label(row: Row) -> str:
+    return f"<td>{html.escape(row.figure)}, {html.escape(row.unit)}</td>"
+
+
+def cells(row: Row | None, compared: bool) -> list[str]:
+    """Now, baseline and change."""
+    now, baseline, change = (NONE, NONE, None) if row is None else (*row_texts(row), row.change)
+    if not compared:
+        return [f"<td>{now}</td>"]
+    sign = "" if change is None or abs(change) < NOTABLE else "more" if change > 0 else "less"
+    return [f"<td>{now}</td>", f"<td>{baseline}</td>", f'<td class="{sign}">{change_text(change)}</td>']
+
+
+def row_texts(row: Row) -> tuple[str, str]:
+    """Now and baseline."""
+    return figure_text(row.now, row.resolution), figure_text(row.baseline, row.resolution)
+
+
+def figure_text(value: float | None, resolution: float = 0.0) -> str:
+    """Three digits that count, as people write them: 0.0912, 1.35, 18.7, 183; none finer than the resolution."""
+    if value is None:
+        return NONE
+    if value == 0:
+        return "0"
+    digits = max(2 - int(f"{abs(value):e}".partition("e")[2]), 0)
+    finest = 4 if resolution == 0 else max(math.ceil(-math.log10(resolution)), 0)
+    return f"{value:.{min(digits, finest, 4)}f}"
+
+
+def change_text(change: float | None) -> str:
+    """Percent with its sign: "+13 %", "−1.1 %"."""
+    if change is None:
+        return NONE
+    text = f"{change:+.0f}" if abs(change) >= 9.95 else f"{change:+.1f}"
+    return f"{'0' if float(text) == 0 else text.replace('-', '−')} %"

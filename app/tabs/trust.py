@@ -1,0 +1,138 @@
+"""How far a run can be trusted: figures of its own correctness, warnings, what was assumed; as HTML. Pure."""
+
+from __future__ import annotations
+
+import html
+from typing import NamedTuple
+
+from app.format.load_unit import load_unit
+from app.format.markup import page, words_html
+from model.analysis.energy import energy_balance, load_balance
+from model.analysis.ride import RideWarning, motion_warnings, warnings
+from model.config.parameters import number_text
+from model.paper.errata import ERRATA
+from model.road.road import Road
+from model.simulation.trajectory import Trajectory
+
+DRIFT_LIMIT = 1e-5  # m by which joints may be apart
+CLOSING_LIMIT = 0.5  # % of the energy turned over that may be unaccounted for
+FORCE_LIMIT = 1e-6  # of the weight that Newton's law may be broken by
+LEAST_SAMPLES = 2  # of a run that has an energy balance
+LEFT_OPEN = "How deep the wheels sink into the ground is judged when the drive pauses."
+
+
+class Check(NamedTuple):
+    """One figure."""
+
+    name: str
+    value: str  # with its unit
+    meaning: str
+    good: bool | None = None  # None: nothing to be judged
+
+
+def trust_html(run: Trajectory, driving: bool = False, road: Road | None = None) -> str:
+    """HTML of figures and warnings. driving: the run is a stretch of an endless drive, without balances of its own.
+
+    road: under that stretch; without it, how deep its wheels sank is left open.
+    """
+    if len(run.t) < LEAST_SAMPLES:
+        return page(f"<p>There is nothing to judge: {html.escape(run.status)}.</p>")
+    open_ended = driving and road is None
+    found = motion_warnings(run) if open_ended else warnings(run, road)
+    checks = [] if driving else balances(run)
+    left_open = f"<p>{LEFT_OPEN}</p>" if open_ended else ""
+    return page(
+        f"<h4>Warnings</h4>{_warnings(found)}{left_open}"
+        f"<h4>Does the run obey its laws?</h4>{_table([*checks, drift(run)])}"
+        f"<h4>Work</h4>{_table(work(run))}"
+    )
+
+
+def errata_html() -> str:
+    """HTML of what was settled beyond the paper."""
+    rows = "".join(
+        f"<li><b>{html.escape(e.where)}.</b> {words_html(e.paper)} <em>Here:</em> {words_html(e.reading)}</li>"
+        for e in ERRATA
+    )
+    return page(f"<h4>Assumed beyond the paper, and its misprints</h4><ol>{rows}</ol>")
+
+
+def balances(run: Trajectory) -> list[Check]:
+    """What the whole run says about energy and forces."""
+    energy, force = energy_balance(run), load_balance(run)
+    system, unit = run.system, load_unit(run.system)
+    weight = float(system.weight.sum())
+    broken = float(abs(force.residual).max()) / weight
+    return [
+        Check(
+            "Energy unaccounted for",
+            f"{energy.closing_error:.2g} %" if energy.turned_over > 0 else "–",
+            f"of {_energy(energy.turned_over)} turned over: drive against dampers, ground and friction",
+            energy.closing_error <= CLOSING_LIMIT if energy.turned_over > 0 else None,
+        ),
+        Check(
+            "Vertical forces out of balance",
+            f"{broken:.1g} of the weight",
+            "at worst: Σ contact forces against Σ m (g + ÿ) of all bodies",
+            broken <= FORCE_LIMIT,
+        ),
+        Check(
+            "Σ contact forces, mean",
+            unit.text(float(force.contact_force.mean())),
+            f"weight {unit.text(weight)}; they differ by what the hull has gained in upward speed",
+        ),
+    ]
+
+
+def drift(run: Trajectory) -> Check:
+    """How far joints came apart."""
+    worst = float(run.constraint_residual.max())
+    return Check(
+        "Joints apart",
+        f"{1e6 * worst:.2g} µm",
+        "at worst; Baumgarte's α and β pull them together",
+        worst <= DRIFT_LIMIT,
+    )
+
+
+def work(run: Trajectory) -> list[Check]:
+    """What the run cost."""
+    of, settings = run.statistics, run.config.simulation
+    seconds = float(run.t[-1])  # work is counted from the start, of a drive too
+    return [
+        Check(
+            "Integrator", settings.integrator, f"rtol {number_text(settings.rtol)}, atol {number_text(settings.atol)}"
+        ),
+        Check("Steps", f"{of.steps}", f"{of.rejected_steps} more were rejected and tried again shorter"),
+        Check("Smallest step", f"{1e3 * of.smallest_step:.3g} ms", "short ones mark impacts and slipping"),
+        Check("Evaluations", f"{of.evaluations}", "of the equations of motion"),
+        Check(
+            "Real-time factor",
+            f"{seconds / of.seconds:.0f}×" if of.seconds > 0 else "–",
+            f"{seconds:.3g} s simulated in {1e3 * of.seconds:.0f} ms",
+        ),
+    ]
+
+
+def _warnings(found: list[RideWarning]) -> str:
+    if not found:
+        return '<p class="good">None: this is within what the model was made for.</p>'
+    items = "".join(f"<li><b>{html.escape(w.what)}</b><br>{html.escape(w.meaning)}</li>" for w in found)
+    return f'<ul class="bad">{items}</ul>'
+
+
+def _table(checks: list[Check]) -> str:
+    return f'<table class="trackride-facts">{"".join(map(_row, checks))}</table>'
+
+
+def _row(check: Check) -> str:
+    sign = {None: "", True: '<span class="good" title="as it should be">✓</span>', False: '<span class="bad">!</span>'}
+    return (
+        f"<tr><th>{html.escape(check.name)}</th><td>{html.escape(check.value)} {sign[check.good]}</td>"
+        f"<td>{html.escape(check.meaning)}</td></tr>"
+    )
+
+
+def _energy(joules: float) -> str:
+    factor, unit = next(((f, u) for f, u in ((1e6, "MJ"), (1e3, "kJ")) if joules >= f), (1.0, "J"))
+    return f"{joules / factor:.3g} {unit}"

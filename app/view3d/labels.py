@@ -1,0 +1,73 @@
+"""The wheels' names under the vehicle, with the loads they carry if wanted."""
+
+from __future__ import annotations
+
+import numpy as np
+import viser
+
+from app.format.load_unit import LoadUnit
+from app.view3d.meshes.layout import Layout
+from app.view3d.nodes import VEHICLE, Frame, update
+
+BELOW = 0.12  # m from the lowest point of the road down to the names of the road wheels of the paper's vehicle
+NAMES = 0.0, 0.2  # m from there down to the middle of each row of names, at the size of the paper's vehicle
+WITH_LOADS = 0.12, 0.67  # the same of names with loads, which take two lines
+UNIT_AHEAD = 0.45  # m from the first wheel to the loads' unit
+FIGURE_SPACE = "\u2007"  # as wide as a figure
+
+
+class WheelLabels:
+    """R1… and below them I1…, under the arrows of the right side."""
+
+    def __init__(self, api: viser.SceneApi, layout: Layout) -> None:
+        name = f"{VEHICLE}/labels"
+        self._frame = Frame(api, name)
+        self._scale, self._y = layout.scale, -layout.arrow
+        between = (np.array(layout.wheel_x)[: len(layout.links)] - layout.links).tolist()
+        families = ("R", layout.wheel_x), ("I", between)
+        self._names = [f"{letter}{k + 1}" for letter, xs in families for k in range(len(xs))]
+        self._places = [(x, row) for row, (_, xs) in enumerate(families) for x in xs]  # along the vehicle, and the row
+        self._labels = [api.add_label(f"{name}/{text}", text, anchor="center-center") for text in self._names]
+        self._texts = self._names
+        ahead = (layout.front + UNIT_AHEAD * self._scale, self._y, -WITH_LOADS[0] * self._scale)
+        self._unit = api.add_label(f"{name}/unit", "", position=ahead, anchor="center-center", visible=False)
+        self._with_loads = False
+        self._arrange()
+
+    def show(self, names: bool, loads: bool) -> None:
+        """Show the names, or the names with their loads, or neither."""
+        self._frame.node.visible = names or loads
+        if loads != self._with_loads:
+            self._with_loads = loads
+            self._arrange()
+
+    def write(self, load: np.ndarray, unit: LoadUnit) -> None:
+        """Say these loads (W,), N, in the model's order, in that unit, if loads are shown."""
+        if self._with_loads:
+            if self._unit.text != unit.name:
+                self._unit.text = unit.name
+            self._say([f"{name}\n{load_text(own, unit)}" for name, own in zip(self._names, load, strict=True)])
+
+    def move(self, x: float, lowest: float) -> None:
+        """Stand under the vehicle at x in the view, m, on a road with this lowest point."""
+        self._frame.move(x, lowest - BELOW * self._scale)
+
+    def _arrange(self) -> None:
+        self._unit.visible = self._with_loads
+        rows = WITH_LOADS if self._with_loads else NAMES
+        for label, (x, row) in zip(self._labels, self._places, strict=True):
+            label.position = (x, self._y, -rows[row] * self._scale)
+        if not self._with_loads:
+            self._say(self._names)
+
+    def _say(self, texts: list[str]) -> None:
+        """Nothing is sent where a label reads so already."""
+        for label, text, before in zip(self._labels, texts, self._texts, strict=True):
+            if text != before:
+                update(label, text=text)
+        self._texts = texts
+
+
+def load_text(load: float, unit: LoadUnit) -> str:
+    """A load, N, without its unit, as wide as the largest: " 8.9"."""
+    return f"{load / unit.newtons:.1f}".rjust(4, FIGURE_SPACE)

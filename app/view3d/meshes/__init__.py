@@ -1,0 +1,1 @@
+"""Meshes made with trimesh, to the measures of the vehicle that is shown."""

@@ -1,0 +1,121 @@
+"""How a ride feels: ISO 2631-1's weighted acceleration and doses, and the power that a sitting person absorbs.
+
+Accelerations are those along the world's axes at a point of the hull. The filters run over the whole run, which begins
+at rest; the figures are taken from the stretch that `steady_from` gives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from model.analysis.signals import CENTRE_OF_MASS, Point, point_acceleration, steady, steady_from
+from model.simulation.trajectory import Trajectory
+
+DECAY = 10.0  # s in which all filters have forgotten: the slowest, of 0.4 Hz, to 2e-8
+RUNNING = 1.0  # s of the running rms whose largest value is the MTVV
+FOOT = 0.3048  # m
+POWER_LIMIT = 6.0  # W that people put up with for long: the limit of the NATO reference mobility model
+
+# ISO 2631-1, annex C.2.3: reactions to weighted accelerations, from how much on, m/s². There the ranges overlap; here
+# the harsher word counts.
+REACTIONS = (
+    (2.0, "extremely uncomfortable"),
+    (1.25, "very uncomfortable"),
+    (0.8, "uncomfortable"),
+    (0.5, "fairly uncomfortable"),
+    (0.315, "a little uncomfortable"),
+    (0.0, "not uncomfortable"),
+)
+
+Filter = Callable[[np.ndarray], np.ndarray]  # s = iω (K,), 1/s -> gain (K,), complex
+
+
+@dataclass(frozen=True)
+class Comfort:
+    """Figures of the ride at one point of the hull."""
+
+    since: float  # s, from when on they are taken
+    vertical: float  # m/s², rms weighted by W_k
+    fore_aft: float  # m/s², rms weighted by W_d
+    crest_factor: float | None  # of the vertical one, peak / rms; None where nothing moves
+    dose: float  # VDV, m/s^1.75: (∫ a_w⁴ dt)^¼ of the vertical one; it grows with time
+    transient: float  # MTVV, m/s²: largest running rms over a second of the vertical one
+    absorbed_power: float  # W, mean, of the vertical acceleration
+
+    @property
+    def total(self) -> float:
+        """m/s²: both directions together, ISO 2631-1's vibration total value in the plane of the model."""
+        return float(np.hypot(self.vertical, self.fore_aft))
+
+    @property
+    def reaction(self) -> str:
+        """ISO 2631-1's word for the total."""
+        return reaction(self.total)
+
+
+def reaction(acceleration: float) -> str:
+    """ISO 2631-1's word for a weighted acceleration, m/s²."""
+    return next(word for least, word in REACTIONS if acceleration >= least)
+
+
+def ride_comfort(trajectory: Trajectory, point: Point = CENTRE_OF_MASS) -> Comfort:
+    """The figures of a run of at least one sample, at a point of the hull."""
+    rate, counts = trajectory.config.simulation.output_rate, steady(trajectory)
+    fore_aft, vertical = point_acceleration(trajectory, point).T
+    up = filtered(vertical, rate, W_K)[counts]
+    along = filtered(fore_aft, rate, W_D)[counts]
+    rms = float(np.sqrt(np.mean(up**2)))
+    return Comfort(
+        since=max(steady_from(trajectory), float(trajectory.t[0])),
+        vertical=rms,
+        fore_aft=float(np.sqrt(np.mean(along**2))),
+        crest_factor=float(np.abs(up).max()) / rms if rms > 0 else None,
+        dose=float((np.sum(up**4) / rate) ** 0.25),
+        transient=float(running_rms(up, rate).max()),
+        absorbed_power=float(np.mean(filtered(vertical / FOOT, rate, absorption)[counts] ** 2)),
+    )
+
+
+def filtered(signal: np.ndarray, rate: float, gain: Filter) -> np.ndarray:
+    """(N,) a signal (N,) with `rate` samples a second, zero before and after, through an analogue filter.
+
+    The filter's own gain is applied to the signal's spectrum: exact up to half the rate, where a recursive filter of
+    sampled values would bend.
+    """
+    length = 2 ** int(np.ceil(np.log2(len(signal) + DECAY * rate)))
+    s = 2j * np.pi * np.fft.rfftfreq(length, 1 / rate)
+    return np.fft.irfft(np.fft.rfft(signal, length) * gain(s), length)[: len(signal)]
+
+
+def running_rms(signal: np.ndarray, rate: float) -> np.ndarray:
+    """(N,) rms over the second up to each sample of a signal (N,), zero before its start."""
+    width = max(round(RUNNING * rate), 1)
+    energy = np.concatenate([np.zeros(width), np.cumsum(signal**2)])
+    return np.sqrt(np.maximum(energy[width:] - energy[: len(signal)], 0.0) / width)
+
+
+def weighting(s: np.ndarray, transition: float, step: bool) -> np.ndarray:
+    """ISO 2631-1, annex A: band limits 0.4 and 100 Hz, transition from acceleration to velocity, Hz, upward step."""
+    low, high, turn = (2 * np.pi * f for f in (0.4, 100.0, transition))
+    gain = s**2 / _quadratic(s, low, np.sqrt(0.5)) * high**2 / _quadratic(s, high, np.sqrt(0.5))
+    gain *= (1 + s / turn) * turn**2 / _quadratic(s, turn, 0.63)
+    if step:
+        gain *= _quadratic(s, 2 * np.pi * 2.37, 0.91) / _quadratic(s, 2 * np.pi * 3.35, 0.91)
+    return gain
+
+
+W_K: Filter = partial(weighting, transition=12.5, step=True)  # vertical, for comfort and health of a sitting person
+W_D: Filter = partial(weighting, transition=2.0, step=False)  # along
+
+
+def absorption(s: np.ndarray) -> np.ndarray:
+    """Pradko & Lee: from vertical acceleration, ft/s², to a value whose mean square is the power absorbed, W."""
+    return 14.5 * s * (s + 44) / ((s + 63) * (s**2 + 24 * s + 750))
+
+
+def _quadratic(s: np.ndarray, omega: float, q: float) -> np.ndarray:
+    return s**2 + s * omega / q + omega**2

@@ -1,0 +1,1 @@
+"""The vehicle and its equations of motion: bodies, suspension, ground, the paper's equations and the kernel."""

@@ -1,0 +1,59 @@
+"""What a road is made of: smooth pieces, level stretches before and behind. Frame as in model/road/road.py, m."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from model.road.table import SAME, quintics
+
+Derivatives = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+class Piece(NamedTuple):
+    """A smooth stretch of road: from nodes[0] to nodes[-1], smooth enough between nodes for one quintic each."""
+
+    nodes: np.ndarray  # (K,) rising x, m
+    derivatives: Callable[[np.ndarray], Derivatives]  # x -> h, h′, h″
+
+
+class Profile(NamedTuple):
+    """Adjoining pieces; before the first and, unless it repeats, behind the last, the road is level."""
+
+    pieces: list[Piece]
+    period: float = 0.0  # m, by which the last piece repeats, joining itself smoothly; 0: it does not
+
+
+def level(low: float, high: float, height: float = 0.0) -> Piece:
+    """A level piece."""
+    return Piece(np.array([low, high]), lambda x: (np.full(x.shape, height), 0 * x, 0 * x))
+
+
+def ramp(low: float, high: float, start: float, end: float) -> Piece:
+    """A straight piece from height `start` to height `end`."""
+    slope = (end - start) / (high - low)
+    return Piece(np.array([low, high]), lambda x: (start + slope * (x - low), np.full(x.shape, slope), 0 * x))
+
+
+def spline(nodes: np.ndarray, h: np.ndarray, h1: np.ndarray, h2: np.ndarray) -> Piece:
+    """Quintics through heights, slopes and curvatures (K,) at nodes (K,): the road itself, not near it."""
+    coefficients = quintics(np.diff(nodes), (h, h1, h2))
+
+    def derivatives(x: np.ndarray) -> Derivatives:
+        cell = np.clip(np.searchsorted(nodes, x, side="right") - 1, 0, len(nodes) - 2)
+        u, c = x - nodes[cell], np.moveaxis(coefficients[cell], -1, 0)
+        return (
+            c[0] + u * (c[1] + u * (c[2] + u * (c[3] + u * (c[4] + u * c[5])))),
+            c[1] + u * (2 * c[2] + u * (3 * c[3] + u * (4 * c[4] + u * (5 * c[5])))),
+            2 * c[2] + u * (6 * c[3] + u * (12 * c[4] + u * (20 * c[5]))),
+        )
+
+    return Piece(nodes, derivatives)
+
+
+def distinct(x: np.ndarray) -> np.ndarray:
+    """Rising, without those that are the same."""
+    x = np.unique(x)
+    return x[np.append(True, np.diff(x) > SAME)] if len(x) else x

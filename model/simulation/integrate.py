@@ -1,0 +1,240 @@
+"""`Integration` holds one run: `advance` carries it on by a stretch of simulated time, so that the caller can look up
+between stretches. A run that comes to grief keeps its good part, a status and advice; nothing is raised.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from model.dynamics.kernel import rates
+from model.dynamics.lanes import coordinates, in_lanes, make_work
+from model.dynamics.vehicle import System
+from model.road.nearest_point import RoadTable
+from model.simulation.steppers import (
+    DORMAND_PRINCE,
+    EVALUATIONS,
+    FRESH,
+    NOW,
+    REJECTED,
+    SAMPLES,
+    SMALLEST,
+    STATUS,
+    STEPS,
+    STEPS_PER_SECOND,
+    STRETCHED,
+    TAKEN,
+    Clock,
+    Samples,
+    Status,
+    adaptive,
+    error_scale,
+    make_samples,
+    record,
+    runge_kutta_4,
+    stiffest_rate,
+    trouble,
+)
+
+if TYPE_CHECKING:
+    from scipy.integrate import OdeSolver
+
+LONGEST_STEP = 0.02  # s
+STIFF_STEP = 1e-3  # s
+STIFFER = 1.05  # than at first, when wheels sink in more deeply
+SCIPY_STEPS_PER_CHUNK = 500  # so that a stop is heeded; normally these last for a second and more of simulated time
+RADII_PER_STEP = 0.5  # no step runs past an obstacle
+
+REASON = {
+    Status.STEP_TOO_SMALL: "the step became too small",
+    Status.NOT_FINITE: "the state is no longer finite",
+    Status.TOO_MANY_STEPS: "too many steps",
+    Status.SOLVER_FAILED: "the solver gave up",
+    Status.RUNAWAY: "a body moves faster than 1000 m/s",
+}
+ADVICE = {
+    Status.STEP_TOO_SMALL: "Loosen rtol and atol, or lower the stiffness and damping of ground and suspension.",
+    Status.NOT_FINITE: "Lower speed, road amplitude or stiffness; with a fixed step, shorten the step.",
+    Status.TOO_MANY_STEPS: "Loosen rtol and atol, lower the stiffness and damping, or try the scipy-radau integrator.",
+    Status.RUNAWAY: "Lower speed, road amplitude or stiffness; with a fixed step, shorten the step.",
+    Status.SOLVER_FAILED: "Try the stretched-rk43 integrator, or other tolerances.",
+}
+
+
+ADAPTIVE = {"stretched-rk43": STRETCHED, "dormand-prince": DORMAND_PRINCE}
+SCIPY_METHODS = {
+    "scipy-rk45": "RK45",
+    "scipy-dop853": "DOP853",
+    "scipy-radau": "Radau",
+    "scipy-bdf": "BDF",
+    "scipy-lsoda": "LSODA",
+}
+
+
+class Integration:
+    """One run under way: from a flat state at t = 0 to `duration` (which may be infinite), sampled at `rate`.
+
+    There is room for all samples of a finite run. An endless one keeps up to `capacity` until `take_samples`.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        road: RoadTable,
+        y: np.ndarray,
+        duration: float,
+        rate: float,
+        integrator: str = "stretched-rk43",
+        rtol: float = 1e-4,
+        atol: float = 1e-6,
+        step: float = 1e-3,
+        capacity: int | None = None,
+    ) -> None:
+        self.system, self.lanes, self.road = system, in_lanes(system), road
+        self.duration, self.rate = duration, rate
+        self.integrator, self.rtol, self.atol = integrator, rtol, atol
+        self.samples = make_samples(system, capacity or int(np.floor(duration * rate + 1e-9)) + 1)
+        self.y = y.copy()
+        self._work = make_work(system)
+        first_step = step if integrator == "rk4" else 1e-4
+        self._clock = Clock(np.array([0.0, first_step, 1e-4, np.inf]), np.zeros(7, dtype=np.int64))
+        self._scale = error_scale(system, rtol, atol)
+        self._stages = np.zeros((7, len(y)))
+        self._spare = np.zeros((2, len(y)))
+        self._stiffness = self._stiffest_rate()
+
+    t = property(lambda self: float(self._clock.time[NOW]), doc="Simulated time so far, s.")
+    status = property(lambda self: Status(int(self._clock.tally[STATUS])), doc="RUNNING until it ends.")
+    steps = property(lambda self: int(self._clock.tally[STEPS]), doc="Accepted steps.")
+    rejected_steps = property(
+        lambda self: int(self._clock.tally[REJECTED]), doc="Steps tried again with a shorter step."
+    )
+    evaluations = property(
+        lambda self: int(self._clock.tally[EVALUATIONS]), doc="Right-hand sides computed by the stepper."
+    )
+    samples_done = property(lambda self: int(self._clock.tally[SAMPLES]), doc="Samples that are filled.")
+    smallest_step = property(lambda self: float(self._clock.time[SMALLEST]), doc="Smallest accepted step, s.")
+
+    def change(self, system: System, road: RoadTable, y: np.ndarray | None = None) -> None:
+        """Carry on with other forces, another road or another state, of the same bodies."""
+        self.system, self.lanes, self.road = system, in_lanes(system), road
+        if y is not None:
+            self.y = y.copy()
+        self._stiffness = self._stiffest_rate()
+        self._clock.tally[FRESH] = 0
+
+    def take_samples(self) -> tuple[np.ndarray, Samples]:
+        """Times (K,), s, and copies of the samples recorded since the last call, which makes room for more."""
+        first, end = int(self._clock.tally[TAKEN]), int(self._clock.tally[SAMPLES])
+        self._clock.tally[TAKEN] = end
+        return np.arange(first, end) / self.rate, Samples._make(part[: end - first].copy() for part in self.samples)
+
+    def give_up(self) -> None:
+        """End a run that takes too many steps: an endless one sets no bound itself."""
+        self._clock.tally[STATUS] = Status.TOO_MANY_STEPS
+
+    def _stiffest_rate(self) -> float:
+        """Largest −λ of the system linearised where it is now, 1/s."""
+        return stiffest_rate(self.lanes, self.road, self.t, self.y, self._work, self._stages, self._spare[0])
+
+    def _longest(self) -> float:
+        """No step runs past an obstacle, or leaves the stepper's stability (of a system that is stiffer than its steps
+        can be short, the error control takes care).
+        """
+        longest = min(LONGEST_STEP, RADII_PER_STEP * self.road.radius / max(abs(self.system.v_ref), 1e-3))
+        tableau = ADAPTIVE.get(self.integrator)
+        return min(longest, max(tableau.reach / (STIFFER * self._stiffness), STIFF_STEP)) if tableau else longest
+
+    def advance(self, t_stop: float) -> Status:
+        """Carry on until t ≥ t_stop, the end, trouble, or 5000 steps; the GIL is free meanwhile."""
+        t_stop = min(t_stop, self.duration)
+        common = (
+            self.lanes,
+            self.road,
+            self._work,
+            self.samples,
+            self._clock,
+            self.rate,
+            self.duration,
+            t_stop,
+        )
+        if self.integrator in ADAPTIVE:
+            adaptive(
+                ADAPTIVE[self.integrator],
+                *common,
+                1.0 / self._scale,
+                self._longest(),
+                self._stages,
+                self.y,
+                *self._spare,
+            )
+        elif self.integrator == "rk4":
+            runge_kutta_4(*common, self._stages, self.y, *self._spare)
+        else:
+            self._advance_scipy(t_stop)
+        return self.status
+
+    def _advance_scipy(self, t_stop: float) -> None:
+        """Some steps of one of SciPy's solvers on the same right-hand side, for comparison."""
+        from scipy import integrate  # half a second that no other stepper needs
+
+        time, count = self._clock
+        dy, place, state = self._stages[0], coordinates(self.system), np.zeros_like(self.y)
+
+        def whole(y: np.ndarray) -> np.ndarray:
+            """The flat state with its empty lanes, which the solvers do not see: nothing depends on them."""
+            state[place] = y
+            return state
+
+        def right_hand_side(t: float, y: np.ndarray) -> np.ndarray:
+            rates(self.lanes, self.road, t, whole(y), dy, self._work)
+            return dy[place]
+
+        try:
+            solver = getattr(integrate, SCIPY_METHODS[self.integrator])(
+                right_hand_side,
+                float(time[NOW]),
+                self.y[place],
+                t_stop,
+                rtol=max(self.rtol, 3e-14),
+                atol=self._scale[place],
+                max_step=self._longest(),
+            )
+            for _ in range(SCIPY_STEPS_PER_CHUNK):
+                if solver.status != "running" or count[STATUS] != Status.RUNNING:
+                    break
+                before = solver.t
+                solver.step()
+                if solver.status == "failed":
+                    count[STATUS] = Status.SOLVER_FAILED
+                    break
+                self._take_step(solver, before, whole)
+            count[EVALUATIONS] += solver.nfev
+        except (ValueError, IndexError, ArithmeticError):  # how they meet a state that is no longer finite
+            count[STATUS] = Status.SOLVER_FAILED
+
+    def _take_step(self, solver: OdeSolver, before: float, whole: Callable[[np.ndarray], np.ndarray]) -> None:
+        """Book a step of a SciPy solver, from `before` to where it stands, and record the samples in it."""
+        time, count = self._clock
+        found = trouble(self.lanes, whole(solver.y))
+        if found:
+            count[STATUS] = found
+            return
+        room = count[TAKEN] + len(self.samples.residual)
+        if count[SAMPLES] < room and count[SAMPLES] / self.rate <= solver.t:
+            within = solver.dense_output()
+            while count[SAMPLES] < room and count[SAMPLES] / self.rate <= solver.t:
+                t = count[SAMPLES] / self.rate
+                row = count[SAMPLES] - count[TAKEN]
+                record(self.lanes, self.road, t, whole(within(t)), self._stages[0], self._work, self.samples, row)
+                count[SAMPLES] += 1
+        time[NOW] = solver.t
+        self.y = whole(solver.y).copy()
+        count[STEPS] += 1
+        time[SMALLEST] = min(time[SMALLEST], solver.t - before)
+        if solver.t >= self.duration:
+            count[STATUS] = Status.COMPLETE
+        elif count[STEPS] > self.duration * STEPS_PER_SECOND:
+            count[STATUS] = Status.TOO_MANY_STEPS

@@ -1,0 +1,117 @@
+"""Config -> Trajectory: rest pose, then the run in chunks, with progress and a way to stop it.
+
+Compiled modules are imported by what runs them: Numba takes a third of a second, and the explorer listens without it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from time import perf_counter
+
+import numpy as np
+
+from model.config.config import Config
+from model.dynamics.equilibrium import rest_pose
+from model.dynamics.lanes import pack
+from model.dynamics.vehicle import System, build_system
+from model.simulation.trajectory import RunStatistics, Trajectory
+
+CHUNK = 1.0  # s of simulated time between two looks at should_stop: about 1 ms
+
+
+def starting_state(system: System) -> tuple[np.ndarray, np.ndarray]:
+    """Flat state at t = 0 (rest pose, moving at v_ref with rolling wheels) and static loads (W,), N.
+
+    Raises NoEquilibriumError.
+    """
+    q, static_load = rest_pose(system)
+    v = np.zeros_like(q)
+    v[:, 0] = system.v_ref
+    v[system.wheel, 2] = -system.v_ref / system.r
+    return pack(system, q, v, np.zeros(len(system.wheel)), 0.0), static_load
+
+
+@cache
+def warm_up(integrator: str = Config().simulation.integrator) -> None:
+    """Compile what an integrator needs, or load it compiled: once a process, half a minute the very first time."""
+    from model.road.road import build_road
+    from model.simulation.integrate import Integration
+
+    config = Config()
+    system = build_system(config)
+    y, _ = starting_state(system)
+    Integration(system, build_road(config).table, y, duration=1e-3, rate=1.0, integrator=integrator).advance(1e-3)
+
+
+def simulate(
+    config: Config,
+    on_progress: Callable[[float], None] | None = None,
+    should_stop: Callable[[], bool] | None = None,
+) -> Trajectory:
+    """The whole run of a configuration.
+
+    on_progress: gets the part done, 0…1, after each chunk. should_stop: asked after each chunk; true ends the run.
+    A run that diverges or is stopped is returned as far as it came, with a status and advice.
+    Raises NoEquilibriumError when the vehicle has no rest pose to start from.
+    """
+    from model.road.road import SPARE, build_road
+    from model.simulation.integrate import ADVICE, REASON, Integration, Status
+
+    warm_up(config.simulation.integrator)
+    began = perf_counter()
+    system, road = build_system(config), build_road(config)
+    y, static_load = starting_state(system)
+    settings = config.simulation
+    run = Integration(
+        system,
+        road.table,
+        y,
+        settings.duration,
+        settings.output_rate,
+        settings.integrator,
+        settings.rtol,
+        settings.atol,
+        settings.step,
+    )
+    stopped = False
+    while not stopped and run.advance(run.t + CHUNK) is Status.RUNNING:
+        if on_progress is not None:
+            on_progress(min(run.t / settings.duration, 1.0))
+        stopped = should_stop is not None and should_stop()
+        if run.y[0] > road.reach - SPARE / 2:  # rolled away downhill
+            road = build_road(config, 2 * road.reach)
+            run.change(system, road.table)
+    if on_progress is not None and run.status is Status.COMPLETE:
+        on_progress(1.0)
+
+    status, advice = "complete", ""
+    if run.status is Status.RUNNING:
+        status = "cancelled"
+    elif run.status is not Status.COMPLETE:
+        status, advice = f"diverged at t = {run.t:.4g} s: {REASON[run.status]}", ADVICE[run.status]
+    n = run.samples_done
+    samples = run.samples
+    return Trajectory(
+        t=np.arange(n) / settings.output_rate,
+        q=samples.q[:n],
+        v=samples.v[:n],
+        a=samples.a[:n],
+        normal_load=samples.f_n[:n],
+        traction=samples.f_t[:n],
+        tangential_displacement=samples.xi[:n],
+        drive_force=samples.F[:n],
+        multipliers=samples.lam[:n],
+        constraint_residual=samples.residual[:n],
+        static_load=static_load,
+        config=config,
+        status=status,
+        advice=advice,
+        statistics=RunStatistics(
+            steps=run.steps,
+            rejected_steps=run.rejected_steps,
+            evaluations=run.evaluations,
+            smallest_step=run.smallest_step,
+            seconds=perf_counter() - began,
+        ),
+    )

@@ -1,0 +1,151 @@
+"""What happened in a run: the arrays of the result file, with the configuration that made them."""
+
+from __future__ import annotations
+
+import csv
+import zlib
+from dataclasses import asdict, dataclass, fields
+from functools import cached_property
+from io import BytesIO, StringIO
+from pathlib import Path
+from typing import IO, Any
+from zipfile import BadZipFile
+
+import numpy as np
+
+from model.config.config import Config, dump_config, parse_config
+from model.dynamics.vehicle import System, build_system
+from model.files import write_whole
+
+LARGEST = 1e50  # of a file's numbers: far above any run's, and their fourth powers can still be added up
+LONGEST_TEXT = 300  # characters of a file's status and advice
+
+
+@dataclass(frozen=True)
+class RunStatistics:
+    """How much work a run was."""
+
+    steps: int
+    rejected_steps: int
+    evaluations: int  # of the right-hand side
+    smallest_step: float  # s
+    seconds: float  # wall-clock time of the whole run, s
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """One run. N samples, B bodies, W wheels (road 1…n, then imaginary), J joints; SI, radians, world frame."""
+
+    t: np.ndarray  # (N,) s
+    q: np.ndarray  # (N, B, 3) x, y, θ of every centre of mass
+    v: np.ndarray  # (N, B, 3) their rates
+    a: np.ndarray  # (N, B, 3) their accelerations
+    normal_load: np.ndarray  # (N, W) f_n, N
+    traction: np.ndarray  # (N, W) f_t along the road, N
+    tangential_displacement: np.ndarray  # (N, W) ξ, m
+    drive_force: np.ndarray  # (N,) F, N
+    multipliers: np.ndarray  # (N, rows of C) λ
+    constraint_residual: np.ndarray  # (N,) max |C(q)|, m
+    static_load: np.ndarray  # (W,) f_n at the static equilibrium, N
+    config: Config
+    status: str  # complete | cancelled | diverged at t = …: reason
+    advice: str  # what to try when it is not complete, else empty
+    statistics: RunStatistics
+
+    @cached_property
+    def system(self) -> System:
+        """The vehicle of this run."""
+        return build_system(self.config)
+
+    @property
+    def complete(self) -> bool:
+        return self.status == "complete"
+
+    def save(self, path: str | Path) -> None:
+        """Write the run as .npz (everything) or .csv (a table of motion and loads, a row a sample).
+
+        Raises ValueError for another suffix, OSError when it cannot be written; a file is there whole or not at all.
+        """
+        path = Path(path)
+        if path.suffix not in (".npz", ".csv"):
+            raise ValueError(f"cannot save a run as {path.name!r}: the name must end in .npz or .csv")
+        write_whole(path, self.to_bytes(path.suffix))
+
+    @classmethod
+    def load(cls, path: str | Path | IO[bytes], name: str = "") -> Trajectory:
+        """Read a run from .npz, a file that messages call `name`.
+
+        Raises OSError, ValueError (not such a file) or ConfigError (its configuration).
+        """
+        name = name or str(path)
+        no_run = f"{name} is not a run saved by trackride run --out"
+        try:
+            with np.load(path, allow_pickle=False) as file:
+                arrays = {name: file[name] for name in file.files}
+            counters = {f.name: arrays.pop(f.name).item() for f in fields(RunStatistics)}
+            texts = {key: arrays.pop(key).item() for key in _TEXTS}
+            parts = {key: arrays[key] for key in _ARRAYS}
+        except (KeyError, TypeError, ValueError, EOFError, RuntimeError, BadZipFile, zlib.error) as error:
+            raise ValueError(no_run) from error
+        config = parse_config(str(texts.pop("config")), source=f"{name}: config")
+        for key, value in counters.items():
+            if type(value) not in (int, float) or not (value > 0 or (value == 0 and type(value) is int)):
+                raise ValueError(f"{no_run}: {key} must be a positive number")
+        for key, text in texts.items():
+            if not isinstance(text, str) or not text.isprintable() or len(text) > LONGEST_TEXT:
+                raise ValueError(f"{no_run}: {key} must be a text of at most {LONGEST_TEXT} printable characters")
+        for key, shape in _shapes(build_system(config), parts["t"].size).items():
+            sound = parts[key].shape == shape and parts[key].dtype == float and (np.abs(parts[key]) < LARGEST).all()
+            if not sound:
+                raise ValueError(f"{no_run}: {key} must hold {shape} finite numbers")
+        if (parts["t"][:1] != 0.0).any() or (np.diff(parts["t"]) <= 0.0).any():
+            raise ValueError(f"{no_run}: t must begin at 0 and grow")
+        return cls(**parts, **texts, config=config, statistics=RunStatistics(**counters))
+
+    def to_bytes(self, suffix: str) -> bytes:
+        """The content of the file that `save` would write: ".npz" or ".csv"."""
+        buffer = BytesIO()
+        {".npz": self._write_npz, ".csv": self._write_csv}[suffix](buffer)
+        return buffer.getvalue()
+
+    def _write_npz(self, file: IO[bytes]) -> None:
+        entries: dict[str, Any] = {name: getattr(self, name) for name in _ARRAYS}
+        entries |= {"config": dump_config(self.config), "status": self.status, "advice": self.advice}
+        np.savez_compressed(file, **entries, **asdict(self.statistics))
+
+    def _write_csv(self, file: IO[bytes]) -> None:
+        names = wheel_names(self.system)
+        columns = {
+            "t [s]": self.t,
+            "hull x [m]": self.q[:, 0, 0],
+            "hull y [m]": self.q[:, 0, 1],
+            "hull pitch [rad]": self.q[:, 0, 2],
+            "hull speed [m/s]": self.v[:, 0, 0],
+            "hull vertical acceleration [m/s2]": self.a[:, 0, 1],
+            "drive force [N]": self.drive_force,
+        }
+        columns |= {f"normal load {name} [N]": self.normal_load[:, w] for w, name in enumerate(names)}
+        columns |= {f"traction {name} [N]": self.traction[:, w] for w, name in enumerate(names)}
+        text = StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows([f"{value:.9g}" for value in row] for row in np.column_stack(list(columns.values())))
+        file.write(text.getvalue().encode())
+
+
+def wheel_names(system: System) -> list[str]:
+    """R1…Rn for road wheels, I1…Im for imaginary wheels, front first: the order of all (…, W) arrays."""
+    return [f"R{i + 1}" for i in range(system.n)] + [f"I{i + 1}" for i in range(system.m)]
+
+
+def _shapes(system: System, N: int) -> dict[str, tuple[int, ...]]:
+    """The shape of each array of a run of N samples."""
+    B, W, rows = len(system.mass), len(system.wheel), 2 * len(system.joint_i) + system.prescribed
+    shapes: dict[str, tuple[int, ...]] = {"multipliers": (N, rows), "static_load": (W,)}
+    shapes |= dict.fromkeys(("q", "v", "a"), (N, B, 3))
+    shapes |= dict.fromkeys(("normal_load", "traction", "tangential_displacement"), (N, W))
+    return shapes | dict.fromkeys(("t", "drive_force", "constraint_residual"), (N,))
+
+
+_TEXTS = ("config", "status", "advice")
+_ARRAYS = tuple(f.name for f in fields(Trajectory) if f.name not in (*_TEXTS, "statistics"))

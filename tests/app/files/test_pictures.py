@@ -1,0 +1,151 @@
+"""Pictures and their names."""
+
+from __future__ import annotations
+
+import io
+import re
+import time
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import app.files.pictures
+from app.files.pictures import NAME_LIMIT, NoPictureError, file_name, framed, movie_frames, take_picture
+from model.config.config import load_config
+from tests.app.conftest import Tab, trackride_threads, wait_for
+
+PAPER = load_config("paper")
+
+
+class FakeCamera:
+    def __init__(self, answer: np.ndarray | Exception) -> None:
+        self.answer = answer
+        self.camera = SimpleNamespace(wxyz=np.array([1.0, 0, 0, 0]), position=np.zeros(3), fov=0.4, aspect=0.6)
+        self.asked: dict[str, Any] = {}
+
+    def get_render(self, height: int, width: int, **how: Any) -> np.ndarray:
+        self.asked = {"size": (width, height), **how}
+        if isinstance(self.answer, Exception):
+            raise self.answer
+        return self.answer
+
+
+def test_a_picture_is_an_opaque_png() -> None:
+    pixels = np.zeros((20, 40, 4), dtype=np.uint8)
+    pixels[:10] = (255, 0, 0, 255)
+    camera = FakeCamera(pixels)
+    picture = Image.open(io.BytesIO(take_picture(camera, 40, 20, "#0000ff")))
+    assert (picture.format, picture.mode, picture.size) == ("PNG", "RGB", (40, 20))
+    assert picture.getpixel((0, 0)) == (255, 0, 0)
+    assert picture.getpixel((0, 15)) == (0, 0, 255)
+    assert camera.asked["size"] == (40, 20)
+    assert camera.asked["transport_format"] == "png"
+    assert camera.asked["timeout"] is not None
+    clear = Image.open(io.BytesIO(take_picture(camera, 40, 20, None)))
+    assert clear.mode == "RGBA"
+    assert clear.getpixel((0, 15)) == (0, 0, 0, 0)
+
+
+@pytest.mark.parametrize("page", [0.4, 1.0, 16 / 9, 3.0])
+def test_a_picture_is_filled_from_left_to_right_by_what_the_page_shows(page: float) -> None:
+    fov = framed(0.36, page, 16 / 9)
+    assert np.tan(fov / 2) * 16 / 9 == pytest.approx(np.tan(0.36 / 2) * page)
+    camera = FakeCamera(np.zeros((90, 160, 4), dtype=np.uint8))
+    camera.camera.aspect = page
+    take_picture(camera, 160, 90, "white")
+    assert camera.asked["fov"] == pytest.approx(framed(0.4, page, 16 / 9))
+
+
+def test_a_movie_shows_each_time_before_it_is_filmed() -> None:
+    camera = FakeCamera(np.zeros((720, 1280, 3), dtype=np.uint8))
+    seen: list[float] = []
+    frames = list(movie_frames(camera, seen.append, 1.0, 2.0))
+    assert len(frames) == len(seen) == 20
+    assert seen == pytest.approx(np.arange(1, 2, 0.05))
+    assert camera.asked["transport_format"] == "jpeg"
+
+
+@pytest.mark.parametrize("error", [TimeoutError("late"), RuntimeError("gone")])
+def test_a_browser_that_does_not_answer_leads_to_a_message(error: Exception) -> None:
+    with pytest.raises(NoPictureError, match="browser"):
+        take_picture(FakeCamera(error), 40, 20, "white")
+
+
+def test_names_tell_preset_changes_and_content() -> None:
+    changes = {
+        "drive.speed_kmh": 22.5,
+        "road.amplitude": 0.15,
+        "vehicle.road_suspension.stiffness": 60000.0,
+        "road.type": "half_round",
+    }
+    name = file_name(PAPER, "Paper vehicle", changes, "1280x720", ".png")
+    assert name == (
+        "paper-vehicle_speed-22.5-km-h_amplitude-150-mm_road-stiffness-60-kn-m_road-type-half-round_1280x720.png"
+    )
+    torsion = {"vehicle.road_suspension.basis": "torsion", "vehicle.road_suspension.stiffness": 9000.0}
+    name = file_name(PAPER.replace(torsion), "Paper vehicle", torsion, "", ".yaml")
+    assert name == "paper-vehicle_road-rates-torsion_road-stiffness-9-kn-m-rad.yaml"
+
+
+def test_names_are_safe_and_short() -> None:
+    evil = "../../etc/passwd\0 <b>\u202e CON: *?|" * 20
+    name = file_name(PAPER, evil, {"vehicle.road_wheels.positions": tuple(range(20, 0, -1))}, "1280x720", ".png")
+    assert re.fullmatch(r"[a-z0-9][a-z0-9._-]*_1280x720\.png", name)
+    assert ".." not in name
+    assert len(name) <= NAME_LIMIT + len(".png")
+    assert file_name(PAPER, "日本", {}, "", ".png") == "run.png"
+
+
+def downloads(tab: Tab) -> list[dict[str, Any]]:
+    return [message for message in tuple(tab.messages) if message["type"] == "FileTransferStartDownload"]
+
+
+def test_a_screenshot_is_downloaded_while_it_plays(explore: Any, open_tab: Any) -> None:
+    tab: Tab = open_tab(explore())
+    wait_for(lambda: tab.shows_run(1))
+    tab.use("Speed, km/h", 22)
+    wait_for(lambda: tab.shows_run(2))
+    tab.press("Screenshot")
+    request = wait_for(lambda: [m for m in tuple(tab.messages) if m["type"] == "GetRenderRequestMessage"], "a request")[
+        0
+    ]
+    assert (request["width"], request["height"]) == (1280, 720)
+    png = io.BytesIO()
+    Image.new("RGBA", (1280, 720), (10, 200, 30, 255)).save(png, "PNG")
+    tab.send("GetRenderResponseMessage", payload=png.getvalue(), render_uuid=request["render_uuid"])
+    download = wait_for(lambda: downloads(tab), "the download")[0]
+    assert download["filename"] == "paper-vehicle_speed-22-km-h_1280x720.png"
+    assert download["save_immediately"]
+
+
+def test_a_hidden_tab_leads_to_a_message_and_the_next_picture_can_be_taken(
+    explore: Any, open_tab: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(app.files.pictures, "RENDER_TIMEOUT", 0.3)
+    tab: Tab = open_tab(explore())
+    wait_for(lambda: tab.shows_run(1))
+    for count in (1, 2):
+        tab.press("Screenshot")
+        wait_for(
+            lambda count=count: len([n for n in tab.notifications if n["title"] == "No picture"]) == count,
+            "a message",
+        )
+        wait_for(lambda: "trackride-errand" not in trackride_threads(), "the errand to end")
+    assert downloads(tab) == []
+
+
+def test_a_tab_that_closes_during_a_picture_leaves_nothing_behind(explore: Any, open_tab: Any) -> None:
+    tab: Tab = open_tab(explore())
+    wait_for(lambda: tab.shows_run(1))
+    tab.press("Screenshot")
+    wait_for(lambda: [m for m in tuple(tab.messages) if m["type"] == "GetRenderRequestMessage"], "the request")
+    assert "trackride-errand" in trackride_threads()
+    tab.press("Screenshot")
+    wait_for(lambda: [n for n in tab.notifications if n["title"] == "One at a time"])
+    began = time.monotonic()
+    tab.close()
+    wait_for(lambda: not trackride_threads(), "the threads to end")
+    assert time.monotonic() - began < 3

@@ -1,0 +1,181 @@
+"""What the plots show: no peak lost, nothing that is no number, units, the baseline, a wheel singled out."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.format.colours import wheel_palette
+from app.plots.curves import Plot, load_plots
+from app.plots.ride import ride_plots
+from app.plots.thinning import BUCKETS, thin
+from model.config.config import load_config
+from model.simulation.trajectory import Trajectory
+from tests.app.conftest import make_run
+
+PAPER = load_config("paper")
+PALETTE = wheel_palette(6, 5)
+
+
+def loads(run: Trajectory, baseline: Trajectory | None = None, wheel: int | None = None) -> tuple[Plot, ...]:
+    return load_plots(run, wheel_palette(run.system.n, run.system.m), baseline, wheel)
+
+
+def all_plots(run: Trajectory, baseline: Trajectory | None = None) -> tuple[Plot, ...]:
+    return loads(run, baseline) + ride_plots(run, wheel_palette(run.system.n, run.system.m), baseline)
+
+
+def column(plot: Plot, label: str, kind: str = "run") -> np.ndarray:
+    [k] = [k for k, curve in enumerate(plot.curves) if (curve.label, curve.kind) == (label, kind)]
+    return plot.values[:, k]
+
+
+@pytest.mark.parametrize("samples", [1, 2, 999, 1000, 1001, 2001, 6001, 100_000])
+@pytest.mark.parametrize("at", [0.0, 0.37, 0.998, 1.0])
+def test_a_spike_of_one_sample_survives(samples: int, at: float) -> None:
+    t = np.arange(samples) / 200
+    values = np.zeros((samples, 3))
+    index = int(at * (samples - 1))
+    values[index] = (7, -5, 0)
+    time, thinned = thin(t, values)
+    assert len(time) <= 2 * BUCKETS
+    assert thinned[:, 0].max() == 7
+    assert thinned[:, 1].min() == -5
+    drawn_at = time[thinned[:, 0].argmax()]
+    assert abs(drawn_at - t[index]) <= t[-1] / BUCKETS + 1 / 200
+
+
+def test_thinned_curves_rise_in_time_and_span_all_of_it() -> None:
+    t = np.linspace(0, 10, 5003)
+    time, values = thin(t, np.sin(t)[:, None])
+    assert (np.diff(time) >= 0).all()
+    assert (time[0], time[-1]) == (0, 10)
+    assert values.max() == np.sin(t).max()
+    assert np.abs(np.interp(t, time, values[:, 0]) - np.sin(t)).max() < 0.03
+
+
+def test_what_is_left_out_lies_on_the_lines_that_are_drawn() -> None:
+    t = np.linspace(0, 10, 5003)
+    waves = np.column_stack([np.sin(t), np.abs(np.sin(1.7 * t)) - 0.5, np.where(t < 6, 0.3, np.nan)])
+    time, values = thin(t, waves)
+    assert len(time) < 500
+    assert np.isin(time, t).all()
+    assert np.diff(time).max() <= 10 / 160
+    for given, drawn in zip(waves.T[:2], values.T[:2], strict=True):
+        assert np.abs(np.interp(t, time, drawn) - given).max() <= 2.5e-3 * 2.0001
+        assert (drawn.min(), drawn.max()) == (given.min(), given.max())
+    ends = np.isfinite(values[:, 2])
+    assert time[ends].max() == t[t < 6].max()
+
+
+def test_a_rough_run_keeps_the_extremes_of_every_stretch() -> None:
+    t = np.arange(20_000) / 200
+    noise = np.random.default_rng(0).normal(size=(len(t), 2))
+    time, values = thin(t, noise)
+    assert len(time) == 2 * BUCKETS
+    for first in range(0, len(t), 50):
+        here = (time >= t[first]) & (time <= t[first + 49])
+        np.testing.assert_array_equal(values[here].max(axis=0), noise[first : first + 50].max(axis=0))
+        np.testing.assert_array_equal(values[here].min(axis=0), noise[first : first + 50].min(axis=0))
+
+
+def test_a_short_run_is_not_thinned() -> None:
+    t = np.arange(2 * BUCKETS) / 200
+    time, values = thin(t, np.cos(t)[:, None])
+    assert np.array_equal(time, t)
+    assert np.array_equal(values[:, 0], np.cos(t))
+
+
+def test_samples_that_are_no_numbers_are_left_out() -> None:
+    run = make_run()
+    load, a = run.normal_load.copy(), run.a.copy()
+    load[-3:] = np.nan
+    a[-1] = np.inf
+    for plot in all_plots(replace(run, normal_load=load, a=a)):
+        assert len(plot.x) == len(plot.values) > 150
+        assert all(np.isfinite(column).all() for column in plot.data)
+
+
+def test_plots_have_units_names_and_the_wheels_colours() -> None:
+    road, imaginary, share = loads(make_run())
+    assert [c.label for c in road.curves if c.kind == "run"] == ["R1", "R2", "R3", "R4", "R5", "R6"]
+    assert [c.colour for c in road.curves if c.kind == "run"] == list(PALETTE.road)
+    assert [c.label for c in imaginary.curves if c.kind == "run"] == ["I1", "I2", "I3", "I4", "I5"]
+    assert [c.colour for c in imaginary.curves if c.kind == "run"] == list(PALETTE.imaginary)
+    assert (road.unit, imaginary.unit, share.unit) == ("kN", "kN", "%")
+    assert column(road, "R1")[0] == pytest.approx(15)  # 15 000 N
+    assert column(share, "Share")[0] == pytest.approx(100 * 5 / 11, abs=0.01)
+
+
+def test_with_all_wheels_in_the_air_the_imaginary_ones_carry_nothing() -> None:
+    run = make_run()
+    *_, share = loads(replace(run, normal_load=np.zeros_like(run.normal_load)))
+    assert (column(share, "Share") == 0).all()
+
+
+def test_the_ride_in_the_units_of_its_plots() -> None:
+    run = make_run()
+    q, v = run.q.copy(), run.v.copy()
+    q[:, 0, 2] = np.radians(3)
+    q[100:, run.system.road_wheels.start + 1, 1] += 0.02
+    v[:, 0, 0] = 10
+    acceleration, pitch, speed, travel = ride_plots(replace(run, q=q, v=v), PALETTE)
+    assert [plot.unit for plot in (acceleration, pitch, speed, travel)] == ["m/s²", "degrees", "km/h", "mm"]
+    assert column(acceleration, "Hull").max() == pytest.approx(15)
+    assert column(pitch, "Hull") == pytest.approx(3)
+    assert column(speed, "Hull") == pytest.approx(36)
+    assert column(travel, "R2")[[0, -1]] == pytest.approx([0, 20], abs=0.1)
+    assert (column(travel, "R1") == 0).all()
+
+
+def test_a_vehicle_without_imaginary_wheels_has_one_plot_of_loads() -> None:
+    run = make_run(PAPER.replace({"vehicle.imaginary_wheels.enabled": False}))
+    assert [plot.title for plot in loads(run)] == ["Normal load of road wheels"]
+
+
+def test_a_baseline_adds_its_curves_at_the_runs_times_as_far_as_it_goes() -> None:
+    run = make_run(PAPER.replace({"drive.speed_kmh": 20}), samples=201)
+    baseline = make_run(PAPER.replace({"vehicle.road_wheels.count": 4}), samples=101)
+    road, imaginary, _ = loads(run, baseline)
+    assert [c.label for c in road.curves if c.kind == "baseline"] == ["R1", "R2", "R3", "R4"]
+    assert [c.label for c in imaginary.curves if c.kind == "baseline"] == ["I1", "I2", "I3"]
+    assert len(road.values) == 201
+    assert column(road, "R1")[0] == pytest.approx(20)
+    assert column(road, "R1", "baseline")[0] == pytest.approx(15)
+    assert np.isfinite(column(road, "R1", "baseline")[:101]).all()
+    assert np.isnan(column(road, "R1", "baseline")[101:]).all()
+    assert road.curves[6].colour == road.curves[0].colour
+    hull = ride_plots(run, PALETTE, baseline)[0]
+    assert column(hull, "Hull", "baseline")[25] == pytest.approx(15)
+
+
+def test_the_load_at_rest_is_marked_for_the_family_or_for_the_wheel_that_is_singled_out() -> None:
+    run = make_run()
+    run = replace(run, static_load=np.arange(11) * 1e3)
+    road, imaginary, _ = loads(run)
+    assert column(road, "at rest", "static") == pytest.approx(2.5)
+    assert column(imaginary, "at rest", "static") == pytest.approx(8)
+    road, imaginary, _ = loads(run, wheel=7)
+    assert column(imaginary, "at rest", "static") == pytest.approx(7)
+    assert [c.colour for c in imaginary.curves if c.kind == "static"] == [PALETTE.imaginary[1]]
+    assert all(c.faded for c in road.curves)
+
+
+def test_a_wheel_singled_out_leaves_the_others_faded() -> None:
+    run, baseline = make_run(), make_run()
+    road, imaginary, share = loads(run, baseline, wheel=2)
+    assert {c.label for c in road.curves if not c.faded} == {"R3", "at rest"}
+    assert sum(not c.faded for c in road.curves) == 3  # with the baseline's
+    assert all(c.faded for c in imaginary.curves)
+    assert not any(c.faded for c in share.curves)
+    travel = ride_plots(run, PALETTE, None, wheel=2)[-1]
+    assert [c.label for c in travel.curves if not c.faded] == ["R3"]
+    assert not any(c.faded for c in ride_plots(run, PALETTE, None, wheel=7)[-1].curves)  # an imaginary wheel has none
+
+
+def test_a_run_without_samples_can_be_plotted() -> None:
+    for plot in all_plots(make_run(samples=0), make_run()) + all_plots(make_run(), make_run(samples=0)):
+        assert len({len(column) for column in plot.data}) == 1
+        assert len(plot.data[0]) > 0

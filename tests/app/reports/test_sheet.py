@@ -1,0 +1,257 @@
+"""The stamped figure: what stands on the page, and that all of it fits."""
+
+from __future__ import annotations
+
+import io
+import xml.etree.ElementTree as ElementTree
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from importlib.metadata import version
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_hex
+from matplotlib.text import Text
+from PIL import Image
+
+from app.format.colours import wheel_palette
+from app.reports.sheet import BOTTOM, compose, stamped_figure
+from app.reports.sheet_page import DPI, HEIGHT, MARGIN, WIDTH, Page
+from app.tabs.comparison import figure_text
+from app.view3d.meshes.hull import PAINT
+from model import load_config, simulate
+from model.config.config import Config
+from model.simulation.trajectory import Trajectory
+
+PAPER = load_config("paper")
+SOFT = PAPER.replace({"vehicle.road_suspension.damping": 2366, "name": "Half the damping"})
+
+
+@pytest.fixture(scope="module")
+def paper() -> Trajectory:
+    return simulate(PAPER)
+
+
+@pytest.fixture(scope="module")
+def soft() -> Trajectory:
+    return simulate(SOFT)
+
+
+def short_run(changes: dict) -> Trajectory:
+    return simulate(PAPER.replace({"simulation.duration": 1.5, "simulation.output_rate": 100, **changes}))
+
+
+def placed(page: Page) -> list[Text]:
+    """All texts that are written on the page, axes' own labels aside."""
+    return [text for text in page.figure.texts if text.get_text()]
+
+
+def words(page: Page) -> list[str]:
+    return [text.get_text() for text in placed(page)]
+
+
+def plots(page: Page) -> dict[str, object]:
+    """The axes by their titles."""
+    return {axes.get_title(loc="left"): axes for axes in page.figure.axes if axes.get_title(loc="left")}
+
+
+def picture(colour: tuple[int, int, int] = (250, 20, 200)) -> bytes:
+    file = io.BytesIO()
+    Image.new("RGB", (320, 180), colour).save(file, "PNG")
+    return file.getvalue()
+
+
+def test_a_png_is_an_a4_page(paper, soft):
+    data = stamped_figure(soft, paper, None, "Paper vehicle, road damping 4.73 → 2.37 kN s/m", ".png")
+    image = Image.open(io.BytesIO(data))
+    assert image.format == "PNG"
+    assert image.size == (int(WIDTH * DPI), int(HEIGHT * DPI))
+    assert image.info["Title"].startswith("Paper vehicle")
+    assert image.info["Software"] == f"Trackride {version('trackride')}"
+    pixels = np.asarray(image.convert("RGB")).astype(int)
+    edge = int(0.5 * MARGIN * DPI)
+    for strip in (pixels[:edge], pixels[:, :edge], pixels[:, -edge:]):
+        assert (strip == 255).all()
+    assert 0.1 < (pixels.min(axis=2) < 250).mean() < 0.6
+
+
+def test_an_svg_is_whole_and_says_what_was_changed(paper, soft):
+    data = stamped_figure(soft, paper, None, "A $title$ with <signs> & all", ".svg")
+    ElementTree.fromstring(data)
+    text = data.decode()
+    assert len(data) < 2e6
+    assert f"Trackride {version('trackride')}" in text
+    for part in ("2.366 kN s/m", "was 4.732 kN s/m", "Half the damping", "Normal load of road wheels, kN", "5125 kg"):
+        assert part in text, part
+
+
+def test_another_suffix_is_refused(paper):
+    with pytest.raises(ValueError, match=r"only as \.png or \.svg"):
+        stamped_figure(paper, None, None, "x", ".pdf")
+
+
+def test_what_was_changed_comes_first_and_everything_is_there(paper, soft):
+    page = compose(soft, paper, None, "Title")
+    texts = placed(page)
+    height = {text.get_text(): text.get_position()[1] for text in texts}
+    assert height["2.366 kN s/m"] == height["was 4.732 kN s/m"]
+    others = [value for label, value in height.items() if label in ("5125 kg", "75.53 kN/m", "15 km/h", "60 MN/m²")]
+    assert len(others) == 4
+    assert all(value < height["2.366 kN s/m"] for value in others)
+    assert "4.732 kN s/m" not in words(page)
+    assert sum(label.startswith("Road damping") for label in words(page)) == 1
+
+
+def test_without_a_baseline_changes_are_against_the_papers_vehicle(paper, soft):
+    assert "as in the paper's vehicle" in words(compose(paper, None, None, "Title"))
+    page = compose(soft, None, None, "Title")
+    assert "was 4.732 kN s/m" in words(page)
+    assert "baseline" not in words(page)
+    flat = compose(short_run({"road.type": "flat"}), None, None, "Title")
+    assert "was sine" in words(flat)
+    round_one = words(compose(short_run({"road.type": "half_round"}), None, None, "Title"))
+    assert "100 mm" in round_one
+    assert not any("None" in word for word in round_one)
+
+
+def test_the_ride_figures_stand_beside_the_baselines(paper, soft):
+    page = compose(soft, paper, None, "Title")
+    for run in (paper, soft):
+        assert figure_text(float(np.sqrt(np.mean(run.a[:, 0, 1] ** 2)))) in words(page)
+        assert figure_text(run.normal_load[:, 0].max() / 1e3) in words(page)
+    change = 100 * (soft.normal_load[:, 5].max() / paper.normal_load[:, 5].max() - 1)
+    assert f"{change:+.1f}".replace("-", "−") in words(page)
+
+
+def test_the_plots_show_both_runs_in_the_wheels_colours(paper, soft):
+    found = plots(compose(soft, paper, picture(), "Title"))
+    assert list(found) == [
+        "Vertical acceleration of the hull, m/s²",
+        "Normal load of imaginary wheels, kN",
+        "Normal load of road wheels, kN",
+    ]
+    lines = found["Normal load of road wheels, kN"].get_lines()
+    assert len(lines) == 12
+    for k, line in enumerate(lines):
+        run = paper if k < 6 else soft
+        np.testing.assert_allclose(line.get_ydata(), run.normal_load[:, k % 6] / 1e3)
+        assert to_hex(line.get_color()) == wheel_palette(6, 5).road[k % 6]
+        assert line.is_dashed() == (k < 6)
+        assert (line.get_alpha() or 1.0) == (0.5 if k < 6 else 1.0)
+    acceleration = found["Vertical acceleration of the hull, m/s²"].get_lines()
+    np.testing.assert_allclose(acceleration[1].get_ydata(), soft.a[:, 0, 1])
+
+
+def test_a_picture_that_is_given_is_shown_and_its_time_marked(paper):
+    page = compose(paper, None, picture((250, 20, 200)), "Title", time=2.5)
+    FigureCanvasAgg(page.figure).draw()
+    pixels = np.asarray(page.figure.canvas.buffer_rgba())[..., :3].astype(int)
+    assert (np.abs(pixels - (250, 20, 200)).max(axis=2) < 8).sum() > 0.8 * (2.6 * DPI) ** 2 * 16 / 9
+    for axes in plots(page).values():
+        assert list(axes.get_lines()[-1].get_xdata()) == [2.5, 2.5]
+    unmarked = compose(paper, None, picture(), "Title")
+    assert len(plots(unmarked)["Normal load of road wheels, kN"].get_lines()) == 6
+
+
+def test_without_a_picture_the_vehicle_is_drawn_with_the_loads_it_has(paper):
+    moment = float(paper.t[(paper.normal_load <= 0).sum(axis=1).argmax()])
+    loaded = int((paper.normal_load[int(moment * 200)] > 0).sum())
+    page = compose(paper, None, None, "Title", time=moment)
+    view = page.figure.axes[0]
+    arrows = [text for text in view.texts if hasattr(text, "arrow_patch")]
+    assert 0 < loaded < 11
+    assert len(arrows) == loaded
+    assert {text.get_text() for text in view.texts} >= {"R1", "R6", "I1", "I5"}
+    FigureCanvasAgg(page.figure).draw()
+    pixels = np.asarray(page.figure.canvas.buffer_rgba())[..., :3].astype(float)
+    box = view.get_window_extent()
+    seen = pixels[int(-box.y1) : int(-box.y0), int(box.x0) : int(box.x1)]
+    paint = np.array(PAINT[:3]) / np.linalg.norm(PAINT[:3])
+    brightness = np.linalg.norm(seen, axis=2)
+    assert ((seen @ paint > 0.99 * brightness) & (brightness < 300) & (brightness > 80)).mean() > 0.1
+
+
+CASES: dict[str, tuple[dict, dict | None]] = {
+    "the paper's": ({}, None),
+    "no imaginary wheels": ({"vehicle.imaginary_wheels.enabled": False}, {}),
+    "two wheels": ({"vehicle.road_wheels.count": 2, "vehicle.road_wheels.spacing": 3.0}, {}),
+    "twenty wheels, a value for each, beside six": (
+        {
+            "vehicle.road_wheels.count": 20,
+            "vehicle.road_suspension.stiffness": tuple(60000.0 + 1234.5 * k for k in range(20)),
+            "name": "A name of many words " * 4,
+        },
+        {},
+    ),
+    "everything changed": (
+        {
+            key: value * 1.01
+            for key, value in Config().values().items()
+            if isinstance(value, float) and not key.startswith("simulation")
+        },
+        {},
+    ),
+    "formulas in names": ({"name": r"100 $ and \frac{1}{0} $x^"}, {"name": "$$"}),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_everything_fits_on_the_page(case):
+    changes, baseline = CASES[case]
+    page = compose(short_run(changes), None if baseline is None else short_run(baseline), None, f"{case} $" * 20)
+    renderer = FigureCanvasAgg(page.figure).get_renderer()
+    left, right, tables = MARGIN - 0.03, WIDTH - MARGIN + 0.03, WIDTH / 2
+    lowest = HEIGHT
+    for text in placed(page):
+        box = text.get_window_extent(renderer)
+        assert left * DPI <= box.x0, text
+        assert box.x1 <= right * DPI, text
+        assert 0.2 * DPI <= box.y0, text
+        assert box.y1 <= (HEIGHT - MARGIN) * DPI, text
+        if box.x0 > tables * DPI and text.get_position()[1] * HEIGHT > 0.3:
+            lowest = min(lowest, text.get_position()[1] * HEIGHT)
+    assert lowest > BOTTOM - 0.02
+
+
+@pytest.mark.parametrize("baseline", [False, True])
+def test_of_many_wheels_those_that_matter_are_told_in_type_that_can_be_read(baseline):
+    many = short_run({"vehicle.road_wheels.count": 20})
+    page = compose(
+        many, short_run({"vehicle.road_wheels.count": 20, "road.amplitude": 0.05}) if baseline else None, None, ""
+    )
+    assert min(text.get_fontsize() for text in placed(page)) >= 6.0
+    told = {word for word in words(page) if word[0] in "RI" and word[1:].isdigit()}
+    most_loaded = many.normal_load.max(axis=0)
+    assert told >= {"R1", "R20", "I1", "I19", f"R{most_loaded[:20].argmax() + 1}", f"I{most_loaded[20:].argmax() + 1}"}
+    assert len(told) <= 11
+    assert any(word.startswith("Of 39 wheels") for word in words(page))
+    assert not any(word.startswith("Of ") for word in words(compose(short_run({}), None, None, "")))
+
+
+def test_texts_of_a_row_do_not_run_into_each_other(paper, soft):
+    page = compose(soft, paper, None, "Title")
+    renderer = FigureCanvasAgg(page.figure).get_renderer()
+    rows: dict[float, list] = {}
+    for text in placed(page):
+        rows.setdefault(round(text.get_position()[1], 5), []).append(text.get_window_extent(renderer))
+    for boxes in rows.values():
+        boxes.sort(key=lambda box: box.x0)
+        assert all(one.x1 < other.x0 for one, other in pairwise(boxes))
+
+
+def test_a_run_that_ended_early_says_so(paper):
+    broken = replace(paper, status="diverged at t = 1.5 s: the step became too small")
+    assert any(
+        "Mind: the run ended early: diverged at t = 1.5 s" in word for word in words(compose(broken, None, None, ""))
+    )
+    assert not any("Mind" in word for word in words(compose(paper, None, None, "")))
+
+
+def test_several_threads_may_make_figures_at_once(paper):
+    with ThreadPoolExecutor(2) as threads:
+        made = list(threads.map(lambda title: stamped_figure(paper, None, None, title, ".svg"), ("One", "Two")))
+    for data, title in zip(made, ("One", "Two"), strict=True):
+        ElementTree.fromstring(data)
+        assert f"<!-- {title} -->" in data.decode()
