@@ -1,5 +1,5 @@
-"""Springs and dampers of all arms at once, for what looks at whole runs or at rest: energies and torques (model.md,
-"Suspension torques"; progression, rebound damping and stops go beyond the paper).
+"""Springs and dampers of all arms at once, for what looks at whole runs or at rest: energies and torques
+(model/MODEL.md, "Suspension torques"; progression, rebound damping and stops go beyond the paper).
 
 u = θ_i − θ_j, the turn of a spring from the design pose, positive while the wheel rises in the hull; arrays
 (…, S) over springs, road arms first; rad, N m, J, W.
