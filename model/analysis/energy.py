@@ -81,7 +81,8 @@ def energy_balance(trajectory: Trajectory) -> EnergyBalance:
 
     drive_power = _drive_power(trajectory)
     suspension_power = dissipated_power(system, turn, turn_rate).sum(axis=1)
-    lost = losses(system.ground, touch.depth, touch.sinking, touch.slip, xi)
+    load, traction = trajectory.normal_load, trajectory.traction
+    lost = losses(system.ground, touch.depth, touch.sinking, touch.slip, xi, load, traction)
     ground_power, friction_power = lost.damping.sum(axis=1), lost.friction.sum(axis=1)
 
     dissipated = suspension_power + ground_power + friction_power

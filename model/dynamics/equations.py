@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from model.dynamics import ground
-from model.dynamics.suspension import torque
+from model.dynamics.suspension import added_torque
 from model.dynamics.vehicle import System
 from model.road.road import Road
 
@@ -49,13 +49,18 @@ def rotation_rate(theta: float) -> np.ndarray:
 
 def suspension_torques(system: System, q: np.ndarray, v: np.ndarray) -> np.ndarray:
     """Q_θ (B,): torques of all torsion bars, N m."""
-    i, j = system.spring_i, system.spring_j
-    # Eq. (1), and eq. (2) with its sign turned
-    tau = torque(system, q[i, 2] - q[j, 2], v[i, 2] - v[j, 2])
-    # Eq. (3): the arm between takes the difference of both torques
     Q_theta = np.zeros(len(q))
-    np.add.at(Q_theta, j, tau)
-    np.subtract.at(Q_theta, i, tau)
+    for s in range(len(system.spring_i)):
+        i, j = system.spring_i[s], system.spring_j[s]
+        u, u_dot = q[i, 2] - q[j, 2], v[i, 2] - v[j, 2]
+        k, c = system.k_s[s], system.c_s[s]
+        # Eq. (1), and eq. (2) with its sign turned: τ = k (θ_i − θ_j) + c (θ̇_i − θ̇_j) + τ_0; then beyond the paper
+        tau = k * u + c * u_dot + system.tau_0[s]
+        if s < system.n:
+            tau += added_torque(system.stops, k, c, system.p[s], system.c_rebound[s], u, u_dot)
+        # Eq. (3): the arm between takes the difference of both torques
+        Q_theta[j] += tau
+        Q_theta[i] -= tau
     return Q_theta
 
 

@@ -1,8 +1,8 @@
 """The ground's law, eq. (4)–(7), in one place: force, energy, stiffness, and what it turns into heat.
 
 z: how deep a wheel is in the ground, m, not at all where z ≤ 0; ṗ: how fast its rim slips along the ground, m/s; ξ (the
-paper's x): how far the ground is sheared under it, m. The functions take numbers, or arrays of one shape. Another kind
-of ground is another law with the same functions.
+paper's x): how far the ground is sheared under it, m. All functions but `force` also take arrays of one shape. Another
+kind of ground is another law with the same functions.
 """
 
 from __future__ import annotations
@@ -39,14 +39,14 @@ class Losses(NamedTuple):
     friction: Values
 
 
-def force(ground: Ground, z: Values, z_dot: Values, p_dot: Values, xi: Values) -> tuple[Values, Values, Values]:
+def force(ground: Ground, z: float, z_dot: float, p_dot: float, xi: float) -> tuple[float, float, float]:
     """Normal load f_n and traction f_t on a wheel, N, and ξ̇, m/s. The kernel compiles this function (contact.py)."""
-    z = np.maximum(z, 0.0)
+    z = max(z, 0.0)
     # Eq. (4), cut at zero: the ground never pulls
-    f_n = np.maximum(z * z * (ground.k_n + ground.c_n * z_dot), 0.0)
+    f_n = max(z * z * (ground.k_n + ground.c_n * z_dot), 0.0)
     # Eq. (5) with the sign of a force on the wheel, limited as eq. (6) says
     limit = ground.mu * f_n
-    f_t = np.minimum(np.maximum(-(ground.k_t * xi + ground.c_t * p_dot), -limit), limit)
+    f_t = min(max(-(ground.k_t * xi + ground.c_t * p_dot), -limit), limit)
     # Eq. (7) with the limited force
     xi_dot = -(ground.k_t * xi + f_t) / ground.c_t
     return f_n, f_t, xi_dot
@@ -68,8 +68,8 @@ def shear_energy(ground: Ground, xi: Values) -> Values:
     return ground.k_t / 2 * xi**2
 
 
-def losses(ground: Ground, z: Values, z_dot: Values, p_dot: Values, xi: Values) -> Losses:
-    """What the ground's damping and the slipping between ground and track turn into heat."""
-    f_n, f_t, xi_dot = force(ground, z, z_dot, p_dot, xi)
+def losses(ground: Ground, z: Values, z_dot: Values, p_dot: Values, xi: Values, f_n: Values, f_t: Values) -> Losses:
+    """What the ground's damping and the slipping between ground and track turn into heat under the force f_n, f_t."""
+    xi_dot = -(ground.k_t * xi + f_t) / ground.c_t
     pressing = (f_n - pressed(ground, z).force) * np.where(z > 0.0, z_dot, 0.0)
     return Losses(damping=pressing + ground.c_t * xi_dot**2, friction=-f_t * (p_dot - xi_dot))

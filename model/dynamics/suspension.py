@@ -2,18 +2,16 @@
 torques"; progression, rebound damping and stops go beyond the paper).
 
 u = θ_i − θ_j, the turn of a spring from the design pose, positive while the wheel rises in the hull; rad, N m, J, W.
-Functions of a System take arrays (…, S) over all springs, road arms first.
+Arrays are (…, S) over all springs, road arms first.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from model.dynamics.vehicle import Stops, System
-
-Values = Any  # a number, or an array with one for each spring, sample …
 
 
 class Elastic(NamedTuple):
@@ -24,25 +22,17 @@ class Elastic(NamedTuple):
     stiffness: np.ndarray  # and the torque's, N m/rad
 
 
-def added_torque(stops: Stops, k: Values, c: Values, p: Values, c_rebound: Values, u: Values, u_dot: Values) -> Values:
-    """What progression, rebound damping and stops add to the torque of a road arm's linear spring and damper, N m.
+def added_torque(stops: Stops, k: float, c: float, p: float, c_rebound: float, u: float, u_dot: float) -> float:
+    """What progression, rebound damping and stops add to the torque of one road arm's linear spring and damper, N m.
 
     The kernel compiles this function (kernel.py).
     """
-    into_bump, into_rebound = u - stops.bump, u - stops.rebound
+    tau = k * p * u * u * u + (c_rebound - c) * min(u_dot, 0.0)
     # A stop pushes, it never pulls
-    bump = np.maximum(stops.k * into_bump + stops.c * u_dot, 0.0) * (into_bump > 0.0)
-    rebound = np.minimum(stops.k * into_rebound + stops.c * u_dot, 0.0) * (into_rebound < 0.0)
-    return k * p * u * u * u + (c_rebound - c) * np.minimum(u_dot, 0.0) + bump + rebound
-
-
-def torque(system: System, u: np.ndarray, u_dot: np.ndarray) -> np.ndarray:
-    """τ (…, S), N m: on arm j; the body before it, i, gets −τ."""
-    # Eq. (1), and eq. (2) with its sign turned
-    tau = system.k_s * u + system.c_s * u_dot + system.tau_0
-    arms = np.s_[..., : system.n]
-    k, c, p, c_rebound = (values[: system.n] for values in (system.k_s, system.c_s, system.p, system.c_rebound))
-    tau[arms] += added_torque(system.stops, k, c, p, c_rebound, u[arms], u_dot[arms])
+    if u > stops.bump:
+        tau += max(0.0, stops.k * (u - stops.bump) + stops.c * u_dot)
+    elif u < stops.rebound:
+        tau += min(0.0, stops.k * (u - stops.rebound) + stops.c * u_dot)
     return tau
 
 
@@ -62,7 +52,11 @@ def elastic(system: System, u: np.ndarray) -> Elastic:
 
 def dissipated_power(system: System, u: np.ndarray, u_dot: np.ndarray) -> np.ndarray:
     """W (…, S), that dampers and stops turn into heat."""
-    return (torque(system, u, u_dot) - elastic(system, u).torque) * u_dot
+    power = np.where(u_dot < 0.0, system.c_rebound, system.c_s) * u_dot**2
+    over = _into_stops(system, u)
+    push = system.stops.k * over + system.stops.c * u_dot
+    push = np.where(push * over > 0.0, push, 0.0)  # a stop never pulls
+    return power + np.where(over != 0.0, (push - system.stops.k * over) * u_dot, 0.0)
 
 
 def _into_stops(system: System, u: np.ndarray) -> np.ndarray:
