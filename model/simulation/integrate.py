@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from model.config.config import Simulation
 from model.dynamics.kernel import rates
 from model.dynamics.lanes import coordinates, in_lanes, make_work
 from model.dynamics.vehicle import System
@@ -109,6 +110,37 @@ class Integration:
     evaluations = property(lambda self: int(self._clock.evaluations), doc="Right-hand sides computed by the stepper.")
     samples_done = property(lambda self: int(self._clock.recorded), doc="Samples that are filled.")
     smallest_step = property(lambda self: float(self._clock.smallest), doc="Smallest accepted step, s.")
+
+    @classmethod
+    def of(
+        cls,
+        settings: Simulation,
+        system: System,
+        road: RoadTable,
+        y: np.ndarray,
+        duration: float,
+        capacity: int | None = None,
+    ) -> Integration:
+        """A run as the configuration wants it integrated."""
+        return cls(
+            system,
+            road,
+            y,
+            duration,
+            settings.output_rate,
+            settings.integrator,
+            settings.rtol,
+            settings.atol,
+            settings.step,
+            capacity,
+        )
+
+    @property
+    def ending(self) -> tuple[str, str]:
+        """For a result: "complete", "running" or how it diverged; and what to try then, else empty."""
+        if self.status in REASON:
+            return f"diverged at t = {self.t:.4g} s: {REASON[self.status]}", ADVICE[self.status]
+        return self.status.name.lower(), ""
 
     def change(self, system: System, road: RoadTable, y: np.ndarray | None = None) -> None:
         """Carry on with other forces, another road or another state, of the same bodies."""
