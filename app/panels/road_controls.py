@@ -10,8 +10,9 @@ from typing import Any
 
 import viser
 
+from app.format.parameters import choice_words, hint, shown_text
 from app.panels.callbacks import by_user
-from app.panels.controls import Wishes, choice_words, hint, shown_text
+from app.panels.controls import Wishes
 from app.panels.road_parts import ADDED, parts_from, parts_text
 from model.config.parameters import Parameter
 

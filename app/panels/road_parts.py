@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from app.panels.controls import choice_words, shown_number
+from app.format.parameters import choice_words, shown_number
 from model.config.config import Config, FlatRoad, ProfileRoad, SimpleRoad, SumRoad, part_values
 from model.config.parameters import PARAMETER, number_text
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from app.panels.controls import choice_words, shown_text
+from app.format.parameters import choice_words, shown_text
 from app.runs.runner import Wish
 from model.config.config import Config
 from model.config.parameters import PARAMETER, Parameter

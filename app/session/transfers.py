@@ -11,17 +11,10 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 import viser
 
-from app.files.pictures import (
-    FIGURE_SIZE,
-    MOVIE_LENGTH,
-    MOVIE_RATE,
-    NoPictureError,
-    file_name,
-    movie_frames,
-    take_picture,
-)
+from app.files.pictures import FIGURE_SIZE, MOVIE_LENGTH, MOVIE_RATE, NoPictureError, movie_frames, take_picture
 from app.files.uploads import configuration, profile_changes, run_from
-from app.panels.controls import shown_text
+from app.format.file_names import file_name
+from app.format.parameters import shown_text
 from app.panels.files_panel import PICTURE
 from app.runs.drive import DriveState
 from app.runs.history import run_name

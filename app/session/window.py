@@ -11,8 +11,9 @@ import viser
 
 from app.format.colours import wheel_palette
 from app.format.load_unit import load_unit
+from app.format.parameters import refusal
 from app.panels.callbacks import by_user
-from app.panels.controls import Wishes, refusal
+from app.panels.controls import Wishes
 from app.panels.files_panel import Exporter, ExportsPanel
 from app.panels.notifications import Notices
 from app.panels.page_layout import LEFT, Layout, Screen

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import re
 import time
 import zipfile
 from typing import Any
@@ -14,8 +13,6 @@ from PIL import Image
 
 import app.session.background
 from app.files.uploads import configuration, run_from
-from app.tabs.comparison import change_text, comparison_table, figure_text
-from model.analysis.ride import comparison
 from model.config.config import SIZE_LIMIT, ConfigError, load_config, parse_config
 from model.simulation.trajectory import Trajectory
 from tests.app.conftest import Tab, make_run, trackride_threads, wait_for
@@ -253,45 +250,3 @@ def test_an_error_in_a_job_is_told_and_the_next_one_begins(monkeypatch: pytest.M
     assert not errands.start(lambda: None)
     errands.close()
     assert done == [True]
-
-
-def test_the_table_of_figures() -> None:
-    run, other = make_run(), make_run(PAPER.replace({"drive.speed_kmh": 30, "vehicle.road_wheels.count": 4}))
-    table = comparison_table(comparison(run, other), compared=True)
-    words = re.sub("<[^>]*>", " ", table).split()
-    assert words.count("baseline") == 1 + 2 + 2 + 1
-    assert "Whole" in words
-    rows = re.findall("<tr>(.*?)</tr>", table)
-    assert all(len(re.findall("<t[dh]", row)) in (2, 3, 4, 7) for row in rows)
-    assert sum(row.startswith("<td>R5") for row in rows) == 3  # the baseline has no such wheel
-    assert "baseline" not in comparison_table(comparison(run, None), compared=False)
-
-
-@pytest.mark.parametrize(
-    ("value", "resolution", "text"),
-    [
-        (None, 0, "–"),
-        (0.0, 0, "0"),
-        (0.0912, 0, "0.0912"),
-        (1.346, 0, "1.35"),
-        (18.74, 0, "18.7"),
-        (182.7, 0, "183"),
-        (0.00001, 0, "0.0000"),
-        (0.09, 0.005, "0.090"),
-        (0.3, 0.1, "0.3"),
-        (1.235, 0.005, "1.24"),
-        (4.0, 1.0, "4"),
-    ],
-)
-def test_figures_have_three_digits_and_none_that_nobody_measured(
-    value: float | None, resolution: float, text: str
-) -> None:
-    assert figure_text(value, resolution) == text
-
-
-@pytest.mark.parametrize(
-    ("change", "text"),
-    [(None, "–"), (13.3, "+13 %"), (-1.147, "−1.1 %"), (0.01, "0 %"), (-0.04, "0 %"), (-9.96, "−10 %")],
-)
-def test_changes_have_their_sign(change: float | None, text: str) -> None:
-    assert change_text(change) == text
