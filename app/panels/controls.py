@@ -98,7 +98,7 @@ class Control:
         return None if self._list is None else file_value(self.parameter, self._list.value)
 
     def was_moved_to_end(self, wished: Any) -> bool:
-        """Whether the slider stands at its end because the page moved it there from the value wished for, beyond it."""
+        """Whether the slider stands at its end because the page moved it there from the value requested, beyond it."""
         if not self.parameter.what_if or not isinstance(wished, int | float):
             return False
         value, shown = self._one.value, shown_number(self.parameter, wished)

@@ -90,7 +90,7 @@ class Driver:
         """clock: real time, s."""
         self._clock = clock
         self._drive = LiveDrive(config, PLOTTED + ALIGNED / config.simulation.output_rate)
-        self._wished = config
+        self._asked = config
         self._start()
 
     def _start(self) -> None:
@@ -104,7 +104,7 @@ class Driver:
 
     def change(self, config: Config) -> None:
         """Drive on with another configuration from the next frame on."""
-        self._wished = config
+        self._asked = config
 
     def stand(self) -> DriveState:
         """Real time passes without driving from here on, until the next frame."""
@@ -156,8 +156,8 @@ class Driver:
         )
 
     def _take_over(self) -> None:
-        """Give the drive what is wished."""
-        if self._wished != self._drive.config and not self._drive.change(self._wished):
+        """Give the drive the configuration that was asked for."""
+        if self._asked != self._drive.config and not self._drive.change(self._asked):
             self._start()
 
 

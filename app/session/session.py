@@ -1,8 +1,8 @@
 """One browser tab from connecting to disconnecting: its threads, and what passes between them.
 
-viser's event loop calls the methods that panels and keys know (change, scrub, set_view …): they leave a wish and
-return. The runner's thread (app/runs/runner.py) turns the latest wish into a run. The view's thread, VIEW_RATE times a
-second or as soon as there is a run, does all that is seen (app/session/window.py); it never draws under a lock.
+viser's event loop calls the methods that panels and keys know (change, scrub, set_view …): they leave a request and
+return. The runner's thread (app/runs/runner.py) turns the latest request into a run. The view's thread, VIEW_RATE times
+a second or as soon as there is a run, does all that is seen (app/session/window.py); it never draws under a lock.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from typing import Any
 import viser
 
 from app.panels.road_parts import with_part, without_last
-from app.runs.history import first_wish
 from app.runs.playback import Playback
-from app.runs.runner import Driven, Failed, Finished, Outcome, Refused, Runner, Simulate, Wish
+from app.runs.request import Driven, Failed, Finished, Outcome, Refused, Request, Simulate, first_request
+from app.runs.runner import Runner
 from app.session.transfers import Order, Porter
 from app.session.window import Scene, Window
 from app.session.workspace import Desk
@@ -33,7 +33,7 @@ VIEW_RATE = 30.0  # Hz: the 3-D view
 TEXT_RATE = 10.0  # Hz: numbers, time slider, time cursors …
 DRAG_TEXT_RATE = 3.0  # Hz: … while runs follow each other, whose curves the page has to draw meanwhile
 DRAG_PAUSE = 0.3  # s after which they do not any more
-REFUSAL_DELAY = 1.2  # s without another wish until a bad value is refused: time to finish typing
+REFUSAL_DELAY = 1.2  # s without another request until a bad value is refused: time to finish typing
 SEEN_WITHIN = 2.0  # s in which what an errand wants is drawn, or else it goes on without
 SAME_ERROR = 5.0  # s before the same error is logged and shown again
 
@@ -59,7 +59,7 @@ class Session:
         self._driving = False  # on and on, instead of a run
         self._in_view = True  # the page is not in the background
         self._intents: dict[str, Callable[[], None]] = {}  # what the view is to do: the newest of each kind
-        self._refused: Refused | None = None  # a bad wish that is not yet spoken of
+        self._refused: Refused | None = None  # a bad request that is not yet spoken of
         self._refuse_at = 0.0  # monotonic s
         self._shown_at = self._told_at = -DRAG_PAUSE  # monotonic s: when a run was shown last, and numbers and times
 
@@ -68,7 +68,7 @@ class Session:
         self._last_error: tuple[str, float] = ("", 0.0)
         self._wake = threading.Event()
         self._closed = threading.Event()
-        self._runner = Runner(first_wish(presets[preset], config), run, self._wake.set, self.fail)
+        self._runner = Runner(first_request(presets[preset], config), run, self._wake.set, self.fail)
         try:
             self._window = Window(client, presets, preset, config, self, make_scene)
         except Exception:
@@ -80,28 +80,28 @@ class Session:
         self._thread = threading.Thread(target=self._show, name="trackride-view", daemon=True)
         self._thread.start()
 
-    # ── What the user wishes for ──
+    # ── What the user requests ──
 
     def change(self, key: str, value: Any) -> None:
-        """Wish for another value of a parameter (as in a file)."""
-        wished = self._runner.latest.changes.get(key)
-        if self._window.was_moved_to_end(key, wished):
+        """Request another value of a parameter (as in a file)."""
+        requested = self._runner.latest.changes.get(key)
+        if self._window.was_moved_to_end(key, requested):
             with self._lock:
                 bad = self._refused is not None
                 self._refuse_at = 0.0  # typing has ended
             if not bad:
-                self._intend(key, lambda: self._window.show_value(key, wished))
+                self._intend(key, lambda: self._window.show_value(key, requested))
         else:
-            self._runner.change(lambda wish: wish.changed(key, value))
+            self._runner.change(lambda request: request.changed(key, value))
 
     def load(self, preset: str) -> None:
-        """Wish for a preset."""
+        """Request a preset."""
         base = self._desk.presets[preset]
-        self._runner.change(lambda wish: Wish(base))
+        self._runner.change(lambda request: Request(base))
 
     def reset(self) -> None:
-        """Wish for the preset without any change."""
-        self._runner.change(lambda wish: Wish(wish.base))
+        """Request the preset without any change."""
+        self._runner.change(lambda request: Request(request.base))
 
     def undo(self) -> None:
         with self._lock:
@@ -112,7 +112,7 @@ class Session:
             self._steps += 1
 
     def ask(self, kind: str, act: Callable[[Desk], None]) -> None:
-        """Wish for something that the desk does; of each kind the newest counts."""
+        """Request something that the desk does; of each kind the newest counts."""
         self._intend(kind, lambda: act(self._desk))
 
     def toggle(self) -> None:
@@ -198,7 +198,7 @@ class Session:
         self.ask("preference", lambda desk: desk.prefer_dark(dark))
 
     def export(self, what: str) -> None:
-        """Wish for a download: a key of the porter's."""
+        """Request a download: a key of the porter's."""
         self._intend("export", lambda: self._export(what))
 
     def cancel_export(self) -> None:
@@ -295,24 +295,24 @@ class Session:
     def _take(self, outcome: Outcome) -> None:
         """Show a run, or keep a refusal for when the user has finished typing."""
         match outcome:
-            case Finished(wish, run):
+            case Finished(request, run):
                 with self._lock:
                     self._refused = None
                     self._playback.fit(float(run.t[-1]) if len(run.t) else 0.0)
                     time = self._playback.time
                 self._good, self._shown_at = outcome, monotonic()
-                self._window.show_run(outcome, time, settled=self._runner.latest.number == wish.number)
+                self._window.show_run(outcome, time, settled=self._runner.latest.number == request.number)
                 self._desk.finished(outcome, monotonic())
-            case Driven(wish, state):
+            case Driven(request, state):
                 with self._lock:
-                    if self._refused is not None and wish.number > self._refused.wish.number:
+                    if self._refused is not None and request.number > self._refused.request.number:
                         self._refused = None
                     if self._driving:
                         self._playback.look_back(float(state.past.t[0]), state.time)
                     time = self._playback.time
                 self._good = outcome
-                self._window.show_drive(outcome, time, settled=self._runner.latest.number == wish.number)
-                self._desk.driven(wish, monotonic())
+                self._window.show_drive(outcome, time, settled=self._runner.latest.number == request.number)
+                self._desk.driven(request, monotonic())
             case Refused():
                 with self._lock:
                     self._refused, self._refuse_at = outcome, monotonic() + REFUSAL_DELAY
@@ -336,7 +336,11 @@ class Session:
             self._attempt(act)
         if steps:
             self._desk.go(steps)
-        if refused is not None and self._good is not None and self._runner.withdraw(refused.wish, self._good.wish):
+        if (
+            refused is not None
+            and self._good is not None
+            and self._runner.withdraw(refused.request, self._good.request)
+        ):
             self._window.refuse(refused, self._good.trajectory.config)
         self._window.draw(playback.time, elapsed)
         if not with_text:
@@ -358,7 +362,7 @@ class Session:
         self._porter.send(
             what,
             Order(
-                wish=self._good.wish,
+                request=self._good.request,
                 run=run,
                 baseline=self._desk.baseline,
                 size=exports.size,

@@ -18,7 +18,7 @@ from app.format.parameters import shown_text
 from app.panels.files_panel import PICTURE
 from app.runs.drive import DriveState
 from app.runs.history import run_name
-from app.runs.runner import Simulate, Wish
+from app.runs.request import Request, Simulate
 from app.runs.storage import State, state_from
 from app.session.background import Errands
 from model.config.config import Config, ConfigError, dump_config
@@ -70,7 +70,7 @@ class Front(Protocol):
 class Order:
     """What is exported, as it was when the user asked for it."""
 
-    wish: Wish
+    request: Request
     run: Trajectory
     baseline: Trajectory | None
     size: tuple[int, int]  # px, of a picture
@@ -84,13 +84,13 @@ class Order:
     def name(self, detail: str, suffix: str) -> str:
         """Of a file."""
         stretch = f"{detail} {self.stretch}".strip()
-        return file_name(self.run.config, self.wish.base.name, self.wish.changes, stretch, suffix)
+        return file_name(self.run.config, self.request.base.name, self.request.changes, stretch, suffix)
 
     @property
     def title(self) -> str:
         """Of a page: what was run, and what was changed."""
-        name = run_name(self.wish.base, self.run.config)
-        whole = name if name == self.wish.base.name else f"{self.wish.base.name}: {name}"
+        name = run_name(self.request.base, self.run.config)
+        whole = name if name == self.request.base.name else f"{self.request.base.name}: {name}"
         return f"{whole}, {self.stretch}" if self.stretch else whole
 
     @property
@@ -145,7 +145,7 @@ class Porter:
         self._begin(partial(self._deliver, doing, partial(make, order)))
 
     def take_configuration(self, name: str, content: bytes) -> None:
-        """Wish for what an uploaded file says."""
+        """Request what an uploaded file says."""
         try:
             config = configuration(name, content)
         except ConfigError as error:

@@ -29,7 +29,7 @@ from app.panels.view_panel import Viewer, ViewPanel
 from app.panels.wheel_card import Picker, WheelCard
 from app.runs.drive import DriveState
 from app.runs.playback import Playback
-from app.runs.runner import Driven, Failed, Finished, Refused
+from app.runs.request import Driven, Failed, Finished, Refused
 from app.tabs.road_profile import RoadAhead
 from app.view3d.mode_animation import PERIOD, ModeShow
 from model.analysis.ride import WheelState
@@ -151,14 +151,14 @@ class Window:
     # ── Runs ──
 
     def show_run(self, done: Finished, time: float, *, settled: bool) -> None:
-        """Show a finished run at `time`, s. settled: no newer wish is on its way, so that the controls may follow."""
+        """Show a finished run at `time`, s. settled: no newer request is on its way; the controls may follow."""
         self._leave_mode()
         run = done.trajectory
-        self._run, self._run_number, self._drive = run, done.wish.number, None
+        self._run, self._run_number, self._drive = run, done.request.number, None
         self._plot(time)
         self._to_scene, self._drawn = run, None
         if settled:
-            self._controls.show(run.config, touched=done.wish.touched)
+            self._controls.show(run.config, touched=done.request.touched)
         if run.complete:
             self._notices.forget("diverged")
         else:
@@ -182,7 +182,7 @@ class Window:
         self.scene.draw(time)
         self._drawn = (self._run_number, time)
         if settled and (before is None or before.config != state.config):
-            self._controls.show(state.config, touched=driven.wish.touched)
+            self._controls.show(state.config, touched=driven.request.touched)
         if state.ended:
             body = f"{state.ended[0].upper()}{state.ended[1:]}. {state.advice} Then press Restart."
             self._notices.show("diverged", "The drive came to an end", body, "orange", stays=True)
@@ -229,8 +229,8 @@ class Window:
         self._controls.offer(presets, chosen)
 
     def refuse(self, refused: Refused, instead: Config) -> None:
-        """Say what is wrong with a wish, and go back to the configuration that was good."""
-        body = " ".join(refusal(fault, refused.wish.changes.get(fault.path), instead) for fault in refused.faults)
+        """Say what is wrong with a request, and go back to the configuration that was good."""
+        body = " ".join(refusal(fault, refused.request.changes.get(fault.path), instead) for fault in refused.faults)
         self._notices.show("refused", "Not possible", body, "red")
         self._controls.show(instead)
 
@@ -238,9 +238,9 @@ class Window:
         """Move a control."""
         self._controls[key].show(value)
 
-    def was_moved_to_end(self, key: str, wished: Any) -> bool:
-        """Whether a slider stands at its end because the page moved it there from the value wished for, beyond it."""
-        return self._controls[key].was_moved_to_end(wished)
+    def was_moved_to_end(self, key: str, requested: Any) -> bool:
+        """Whether a slider stands at its end because the page moved it there from the value requested, beyond it."""
+        return self._controls[key].was_moved_to_end(requested)
 
     def report_failure(self, failed: Failed) -> None:
         self._notices.show("refused", "No run", failed.message, "red")

@@ -9,8 +9,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, Protocol
 
-from app.runs.history import REST, Changes, Kept, Runs, first_wish, run_name, same
-from app.runs.runner import Finished, Wish
+from app.runs.history import REST, Changes, Kept, Runs, run_name
+from app.runs.request import Finished, Request, first_request, same
 from app.runs.storage import PRESETS, State, state_text
 from app.session.window import Window
 from model.config.config import Config, ConfigError
@@ -24,9 +24,9 @@ class Wishing(Protocol):
     """What the desk asks of the runner."""
 
     @property
-    def latest(self) -> Wish: ...
+    def latest(self) -> Request: ...
 
-    def change(self, update: Callable[[Wish], Wish]) -> None: ...
+    def change(self, update: Callable[[Request], Request]) -> None: ...
 
 
 class Helper(Protocol):
@@ -38,7 +38,7 @@ class Helper(Protocol):
 
 
 class Desk:
-    """Shows what it keeps in the window, and wishes for runs."""
+    """Shows what it keeps in the window, and requests runs."""
 
     def __init__(self, window: Window, runner: Wishing, presets: Mapping[str, Config], helper: Helper) -> None:
         """presets: name -> configuration."""
@@ -77,20 +77,20 @@ class Desk:
 
     def finished(self, done: Finished, now: float) -> None:
         """A run is shown, at `now`, s."""
-        fresh = self._good is None or not same(self._good.wish, done.wish)
+        fresh = self._good is None or not same(self._good.request, done.request)
         self._good, self._good_at, self._rested, self._before_drive = done, now, False, ""
         self._complete(done.trajectory)
         self._kept = self._runs.find(done.trajectory.config)
         self._compared = False
         self._named &= not fresh
-        self._came_true(done.wish, now)
+        self._came_true(done.request, now)
 
-    def driven(self, wish: Wish, now: float) -> None:
+    def driven(self, request: Request, now: float) -> None:
         """A drive is shown, at `now`, s."""
         if self._good is not None:
             self._before_drive, self._good, self._kept = self._name, None, None
             self._show()
-        self._came_true(wish, now)
+        self._came_true(request, now)
 
     def set_dark(self, dark: bool) -> None:
         """Change the look of the page."""
@@ -115,7 +115,7 @@ class Desk:
             self._helper.run_again(self._baseline.config)
         if self._good is not None and len(self._good.trajectory.t):
             seen = self._window.runs_in_front and now - self._compared_at >= COMPARE_EVERY
-            rests = not self._rested and now - self._good_at >= REST and self._settled(self._good.wish)
+            rests = not self._rested and now - self._good_at >= REST and self._settled(self._good.request)
             if seen or rests or now - self._good_at >= CALM:
                 self._tell(now)
             if rests:
@@ -124,27 +124,27 @@ class Desk:
         if self._restored and self._news_at is not None and now - self._news_at >= REST:
             self._remember()
 
-    def _came_true(self, wish: Wish, now: float) -> None:
-        if self._settled(wish):
-            if not same(wish, self._changes.present):
+    def _came_true(self, request: Request, now: float) -> None:
+        if self._settled(request):
+            if not same(request, self._changes.present):
                 self._news_at = now
-            self._changes.note(wish, now)
-            self._offer(wish.base)
+            self._changes.note(request, now)
+            self._offer(request.base)
 
-    def _settled(self, wish: Wish) -> bool:
-        """Whether no newer wish is on its way."""
-        return self._runner.latest.number == wish.number
+    def _settled(self, request: Request) -> bool:
+        """Whether no newer request is on its way."""
+        return self._runner.latest.number == request.number
 
     # ── Steps ──
 
     def go(self, steps: int) -> None:
         """Undo so many steps when negative, or redo them."""
         under_way = not same(self._runner.latest, self._changes.present)
-        wish = self._changes.go(steps + 1 if under_way and steps < 0 else steps)
-        if wish is None and under_way and steps < 0:
-            wish = self._changes.present
-        if wish is not None:
-            self._wish(wish)
+        request = self._changes.go(steps + 1 if under_way and steps < 0 else steps)
+        if request is None and under_way and steps < 0:
+            request = self._changes.present
+        if request is not None:
+            self._request(request)
         else:
             self._window.say("Nothing to undo" if steps < 0 else "Nothing to redo", "All parameters stay as they are.")
 
@@ -165,7 +165,7 @@ class Desk:
             return
         other = self._baseline
         self._set_baseline(self._keep(self._good))
-        self._wish(other.wish)
+        self._request(other.request)
 
     def clear(self) -> None:
         """Compare no more."""
@@ -174,7 +174,7 @@ class Desk:
     def recall(self, number: int) -> None:
         """Show a run that is kept."""
         if number in self._runs:
-            self._wish(self._runs[number].wish)
+            self._request(self._runs[number].request)
 
     def compare(self, number: int) -> None:
         """Make a run that is kept the baseline."""
@@ -199,7 +199,7 @@ class Desk:
 
     def take_in(self, run: Trajectory, name: str) -> None:
         """Keep a run from outside, and make it the baseline."""
-        self._set_baseline(self._runs.keep(Wish(run.config), run, name))
+        self._set_baseline(self._runs.keep(Request(run.config), run, name))
         self._window.say("Baseline pinned", f"{name}. What is shown is compared with it.")
 
     def made_again(self, config: Config, run: Trajectory | None) -> None:
@@ -218,7 +218,7 @@ class Desk:
             self._set_baseline(replace(baseline, run=run))
 
     def _keep(self, good: Finished) -> Kept:
-        self._kept = self._runs.keep(good.wish, good.trajectory)
+        self._kept = self._runs.keep(good.request, good.trajectory)
         self._news()
         return self._kept
 
@@ -238,7 +238,7 @@ class Desk:
         """Of the run that is shown."""
         if self._kept is not None:
             return self._kept.name
-        return "" if self._good is None else run_name(self._good.wish.base, self._good.trajectory.config)
+        return "" if self._good is None else run_name(self._good.request.base, self._good.trajectory.config)
 
     def _show(self) -> None:
         self._window.runs.show(self._runs, self._name, self._kept, self._baseline, self._before_drive)
@@ -257,21 +257,21 @@ class Desk:
     # ── Configurations ──
 
     def use(self, config: Config) -> None:
-        """Wish for a configuration from outside: for changes to the present preset if it has that one's name."""
+        """Request a configuration from outside: for changes to the present preset if it has that one's name."""
         base = self._runner.latest.base
-        self._wish(first_wish(base, config) if config.name == base.name else Wish(config))
+        self._request(first_request(base, config) if config.name == base.name else Request(config))
 
     def change_road(self, changes_of: Callable[[Config], dict[str, Any]]) -> None:
-        """Wish for changes to the road of the latest wish (dotted key -> value), if that is a possible one."""
+        """Request changes to the road of the latest request (dotted key -> value), if that is a possible one."""
 
-        def changed(wish: Wish) -> Wish:
+        def changed(request: Request) -> Request:
             try:
-                changes = changes_of(wish.config())
+                changes = changes_of(request.config())
             except ConfigError:  # it will be refused
-                return wish
+                return request
             for key, value in changes.items():
-                wish = wish.changed(key, value)
-            return Wish(wish.base, wish.changes)
+                request = request.changed(key, value)
+            return Request(request.base, request.changes)
 
         self._runner.change(changed)
 
@@ -292,7 +292,7 @@ class Desk:
             if self._presets[own].name == name:
                 self._presets[own] = config
         self._offer(config)
-        self._wish(Wish(config))
+        self._request(Request(config))
         self._news_at = 0.0
         self._window.say("Preset saved", f"{name} is among the presets of this browser.")
 
@@ -307,9 +307,9 @@ class Desk:
                 del self._presets[self._own.pop(0)]
         self._window.show_presets(self._presets, name)
 
-    def _wish(self, wish: Wish) -> None:
-        """Wish for all of it: the controls follow."""
-        self._runner.change(lambda latest: Wish(wish.base, wish.changes))
+    def _request(self, request: Request) -> None:
+        """Request all of it: the controls follow."""
+        self._runner.change(lambda latest: Request(request.base, request.changes))
 
     # ── From one visit to the next ──
 
@@ -337,8 +337,8 @@ class Desk:
             return
         if state.baseline is not None and self._baseline is None:
             self._set_baseline(self._runs.find(state.baseline.config) or state.baseline)
-        if state.wish is not None and not same(state.wish, latest):
-            self._wish(state.wish)
+        if state.request is not None and not same(state.request, latest):
+            self._request(state.request)
             self._window.say("Welcome back", "All parameters are as you left them. Undo leads back to the start.")
 
     def _remember(self) -> None:

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import viser
 
-from app.runs.runner import Finished
+from app.runs.request import Finished
 from app.server import Explorer as Server
 from app.session.session import Session
 from app.session.window import Window

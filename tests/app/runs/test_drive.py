@@ -1,4 +1,4 @@
-"""The endless drive: in step with real time however long it lasts, slower rather than behind, following all wishes."""
+"""The endless drive: in step with real time however long it lasts, slower rather than behind, following each change."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ import app.runs.runner
 from app.panels.playback_panel import driven_text
 from app.runs.drive import ALIGNED, FRAME, LONGEST_FRAME, PLOTTED, Driver, Pace, aligned
 from app.runs.playback import Playback
-from app.runs.runner import Driven, Failed, Finished, Refused, Runner, Wish
+from app.runs.request import Driven, Failed, Finished, Refused, Request
+from app.runs.runner import Runner
 from model.analysis.ride import penetration
 from model.config.config import Config, load_config
 from model.dynamics.equilibrium import NoEquilibriumError
@@ -164,7 +165,7 @@ def test_a_drive_that_stands_shows_its_whole_past_on_the_road_it_drove_on() -> N
 
 def start(first: Config = PAPER, run: Any = simulate_at_once) -> tuple[Runner, list[Exception]]:
     errors: list[Exception] = []
-    return Runner(Wish(first), run, lambda: None, errors.append), errors
+    return Runner(Request(first), run, lambda: None, errors.append), errors
 
 
 def next_of(runner: Runner, kind: type, condition: Any = lambda outcome: True) -> Any:
@@ -172,14 +173,14 @@ def next_of(runner: Runner, kind: type, condition: Any = lambda outcome: True) -
     return found[0]
 
 
-def test_a_wish_acts_on_the_moving_vehicle() -> None:
+def test_a_request_acts_on_the_moving_vehicle() -> None:
     runner, errors = start()
     runner.drive(1.0)
     before = next_of(runner, Driven, lambda outcome: outcome.state.time > 0.2)
-    runner.change(lambda wish: wish.changed(SPEED, 25))
+    runner.change(lambda request: request.changed(SPEED, 25))
     after = next_of(runner, Driven, lambda outcome: outcome.state.config.drive.speed_kmh == 25)
     runner.close()
-    assert after.wish.number == before.wish.number + 1
+    assert after.request.number == before.request.number + 1
     assert after.state.time > before.state.time
     assert errors == []
 
@@ -209,7 +210,7 @@ def test_back_to_runs_shows_the_run_of_the_present_parameters() -> None:
     runner, _ = start()
     next_of(runner, Finished)
     runner.drive(1.0)
-    runner.change(lambda wish: wish.changed(SPEED, 40))
+    runner.change(lambda request: request.changed(SPEED, 40))
     next_of(runner, Driven, lambda outcome: outcome.state.config.drive.speed_kmh == 40)
     runner.drive(None)
     assert next_of(runner, Finished).trajectory.config.drive.speed_kmh == 40
@@ -227,19 +228,19 @@ def test_a_run_under_way_is_given_up_for_the_drive() -> None:
     runner.close()
 
 
-def test_a_bad_wish_is_refused_and_the_drive_goes_on_with_the_good_one() -> None:
+def test_a_bad_request_is_refused_and_the_drive_goes_on_with_the_good_one() -> None:
     runner, _ = start()
     runner.drive(1.0)
     good = next_of(runner, Driven)
-    runner.change(lambda wish: wish.changed(SPEED, -1))
+    runner.change(lambda request: request.changed(SPEED, -1))
     refused = next_of(runner, Refused)
-    assert runner.withdraw(refused.wish, good.wish)
+    assert runner.withdraw(refused.request, good.request)
     later = next_of(runner, Driven, lambda outcome: outcome.state.time > good.state.time + 0.1)
     runner.close()
     assert later.state.config == PAPER
 
 
-def test_what_cannot_stand_at_rest_fails_and_the_next_wish_drives(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_cannot_stand_at_rest_fails_and_the_next_request_drives(monkeypatch: pytest.MonkeyPatch) -> None:
     class Picky(Driver):
         def __init__(self, config: Config) -> None:
             if config.drive.speed_kmh == 20:
@@ -250,7 +251,7 @@ def test_what_cannot_stand_at_rest_fails_and_the_next_wish_drives(monkeypatch: p
     runner, errors = start(PAPER.replace({SPEED: 20}))
     runner.drive(1.0)
     assert next_of(runner, Failed).message == "springs too soft"
-    runner.change(lambda wish: wish.changed(SPEED, 25))
+    runner.change(lambda request: request.changed(SPEED, 25))
     assert next_of(runner, Driven).state.config.drive.speed_kmh == 25
     runner.close()
     assert errors == []

@@ -1,4 +1,4 @@
-"""One tab: the newest wish wins, nothing old overwrites newer runs, no bad value gets in, nothing outlives the tab."""
+"""One tab: the newest request wins, no old run hides a newer one, no bad value gets in, nothing outlives the tab."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 import app.session.session
-from app.runs.runner import Failed, Finished, Outcome, Refused, Runner, Wish
+from app.runs.request import Failed, Finished, Outcome, Refused, Request, first_request
+from app.runs.runner import Runner
 from app.server import Explorer
-from app.session.session import first_wish
 from model.config.config import Config, load_config
 from model.dynamics.equilibrium import NoEquilibriumError
 from model.simulation.trajectory import Trajectory
@@ -48,18 +48,18 @@ class Bench:
 
 def start(run: Any, first: Config = PAPER) -> tuple[Runner, list[Exception]]:
     errors: list[Exception] = []
-    return Runner(Wish(first), run, lambda: None, errors.append), errors
+    return Runner(Request(first), run, lambda: None, errors.append), errors
 
 
-def faster(speed: Any) -> Callable[[Wish], Wish]:
-    return lambda wish: wish.changed(SPEED, speed)
+def faster(speed: Any) -> Callable[[Request], Request]:
+    return lambda request: request.changed(SPEED, speed)
 
 
 def outcome_of(runner: Runner) -> Outcome:
     return wait_for(lambda: runner.take(), "an outcome")[0]
 
 
-def test_wishes_that_nobody_has_begun_are_replaced() -> None:
+def test_requests_that_nobody_has_begun_are_replaced() -> None:
     bench = Bench(part_done=0.9)
     runner, _ = start(bench)
     wait_for(lambda: bench.begun, "the first run")
@@ -67,7 +67,7 @@ def test_wishes_that_nobody_has_begun_are_replaced() -> None:
         runner.change(faster(speed))
     bench.go_on.set()
     finished = wait_for(
-        lambda: [o for o in runner.take() if isinstance(o, Finished) and o.wish.number == 11], "the last wish"
+        lambda: [o for o in runner.take() if isinstance(o, Finished) and o.request.number == 11], "the last request"
     )[0]
     runner.close()
     assert bench.begun == [15, 29]
@@ -75,7 +75,7 @@ def test_wishes_that_nobody_has_begun_are_replaced() -> None:
     assert finished.trajectory.config.drive.speed_kmh == 29
 
 
-def test_a_newer_wish_stops_a_run_that_has_far_to_go_and_hides_it() -> None:
+def test_a_newer_request_stops_a_run_that_has_far_to_go_and_hides_it() -> None:
     bench = Bench()
     bench.go_on.set()
     runner, _ = start(bench)
@@ -87,12 +87,12 @@ def test_a_newer_wish_stops_a_run_that_has_far_to_go_and_hides_it() -> None:
     wait_for(lambda: 30 in bench.begun, "the third run")
     assert bench.stopped == [20]
     bench.go_on.set()
-    assert outcome_of(runner).wish.changes == {SPEED: 30}
+    assert outcome_of(runner).request.changes == {SPEED: 30}
     runner.close()
 
 
 def test_a_long_drag_still_shows_something() -> None:
-    """Wishes that come faster than runs end do not stop every run."""
+    """Requests that come faster than runs end do not stop every run."""
 
     def slow(config: Config, *, on_progress: Any, should_stop: Any) -> Trajectory:
         for part in range(1, 13):
@@ -107,7 +107,7 @@ def test_a_long_drag_still_shows_something() -> None:
     end = time.monotonic() + 1.5
     while time.monotonic() < end:
         runner.change(faster(10 + len(shown)))
-        shown += [outcome.wish.number for outcome in runner.take()]
+        shown += [outcome.request.number for outcome in runner.take()]
         time.sleep(0.03)
     runner.close()
     assert len(shown) >= 3
@@ -124,7 +124,7 @@ def test_a_refusal_does_not_hide_the_run_before_it() -> None:
     assert [type(outcome) for outcome in outcomes] == [Finished, Refused]
 
 
-def test_what_cannot_stand_at_rest_fails_with_its_message_and_the_next_wish_runs() -> None:
+def test_what_cannot_stand_at_rest_fails_with_its_message_and_the_next_request_runs() -> None:
     def run(config: Config, **_: Any) -> Trajectory:
         if config.drive.speed_kmh == 20:
             raise NoEquilibriumError("springs too soft")
@@ -144,11 +144,11 @@ def test_what_cannot_stand_at_rest_fails_with_its_message_and_the_next_wish_runs
     assert [type(error) for error in errors] == [ZeroDivisionError]
 
 
-def test_a_wish_is_not_withdrawn_when_there_is_a_newer_one() -> None:
+def test_a_request_is_not_withdrawn_when_there_is_a_newer_one() -> None:
     runner, _ = start(simulate_at_once)
-    good = outcome_of(runner).wish
+    good = outcome_of(runner).request
     runner.change(faster(-1))
-    refused = outcome_of(runner).wish
+    refused = outcome_of(runner).request
     runner.change(faster(40))
     assert not runner.withdraw(refused, good)
     assert runner.latest.changes == {SPEED: 40}
@@ -157,21 +157,21 @@ def test_a_wish_is_not_withdrawn_when_there_is_a_newer_one() -> None:
 
 def test_contradicting_changes_drop_out() -> None:
     suspension = "vehicle.imaginary_suspension"
-    wish = Wish(PAPER).changed(f"{suspension}.preload_deflection", 0.2)
-    wish = wish.changed(f"{suspension}.preload_force", 500.0)
-    assert wish.config().vehicle.imaginary_suspension.preload_force == 500
-    wish = wish.changed(f"{suspension}.preload_deflection", 0.15)
-    assert wish.config().vehicle.imaginary_suspension.preload_force is None
-    wish = Wish(PAPER).changed("road.amplitude", 0.2).changed("road.type", "flat")
-    assert wish.config().road.type == "flat"
-    assert wish.changed("road.type", "sine").config().road == PAPER.road
+    request = Request(PAPER).changed(f"{suspension}.preload_deflection", 0.2)
+    request = request.changed(f"{suspension}.preload_force", 500.0)
+    assert request.config().vehicle.imaginary_suspension.preload_force == 500
+    request = request.changed(f"{suspension}.preload_deflection", 0.15)
+    assert request.config().vehicle.imaginary_suspension.preload_force is None
+    request = Request(PAPER).changed("road.amplitude", 0.2).changed("road.type", "flat")
+    assert request.config().road.type == "flat"
+    assert request.changed("road.type", "sine").config().road == PAPER.road
 
 
 def test_a_configuration_is_a_preset_with_changes() -> None:
     config = PAPER.replace({SPEED: 22})
-    assert first_wish(PAPER, config).changes == {SPEED: 22}
+    assert first_request(PAPER, config).changes == {SPEED: 22}
     other = load_config("half_round")
-    assert first_wish(PAPER, other).config() == other
+    assert first_request(PAPER, other).config() == other
 
 
 # With a tab, over viser's own protocol
@@ -263,7 +263,7 @@ def test_a_value_that_is_corrected_in_time_is_not_refused(explore: Any, open_tab
     assert tab.notifications == []
 
 
-def test_what_the_page_moves_to_the_sliders_end_is_not_a_wish(explore: Any, open_tab: Any) -> None:
+def test_what_the_page_moves_to_the_sliders_end_is_not_a_request(explore: Any, open_tab: Any) -> None:
     """The page puts a typed 500 to the slider's end, 70, when the box loses the focus."""
     tab: Tab = open_tab(explore())
     wait_for(lambda: tab.shows_run(1))

@@ -12,7 +12,7 @@ import pytest
 
 import app.session.workspace
 from app.runs.history import Runs
-from app.runs.runner import Wish
+from app.runs.request import Request
 from app.runs.storage import state_text
 from model.config.config import Config, load_config
 from model.dynamics.equilibrium import NoEquilibriumError
@@ -264,9 +264,9 @@ def test_a_baseline_that_cannot_be_made_again_is_given_up_with_a_word(explore: A
         return simulate_at_once(config, **how)
 
     paper = load_config("paper")
-    wish = Wish(paper).changed(SPEED_KEY, 44)
-    kept = Runs().keep(wish, make_run(wish.config()))
-    stored = state_text(paper, Wish(paper), [], [], kept, dark=False)
+    request = Request(paper).changed(SPEED_KEY, 44)
+    kept = Runs().keep(request, make_run(request.config()))
+    stored = state_text(paper, Request(paper), [], [], kept, dark=False)
     tab: Tab = open_tab(explore(run=simulate), storage={"trackride": stored})
     wait_for(lambda: [n for n in tab.notifications if n["title"] == "No baseline"], "a word")
     wait_for(lambda: "No baseline" in text_of(html(tab, "trackride-compared")))
@@ -321,9 +321,9 @@ def test_what_is_no_state_is_left_alone(explore: Any, open_tab: Any, stored: str
 
 def test_what_the_explorer_was_started_with_goes_before_the_last_visit(explore: Any, open_tab: Any) -> None:
     paper = load_config("paper")
-    wish = Wish(paper).changed(SPEED_KEY, 33)
-    kept = Runs().keep(wish, make_run(wish.config()))
-    stored = state_text(paper, wish, [paper.replace({"name": "Mine"})], [kept], kept, dark=False)
+    request = Request(paper).changed(SPEED_KEY, 33)
+    kept = Runs().keep(request, make_run(request.config()))
+    stored = state_text(paper, request, [paper.replace({"name": "Mine"})], [kept], kept, dark=False)
     tab: Tab = open_tab(explore(load_config("half_round"), "half_round"), storage={"trackride": stored})
     wait_for(lambda: "Mine" in tab.widget("Preset")["props"]["options"], "the saved preset")
     wait_for(lambda: "Speed 15 → 33 km/h" in rows(tab), "the kept run")
