@@ -5,11 +5,12 @@ A box shows a value in the table's friendlier unit (`shown_unit`); what the sess
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any
 
 import viser
 
 from app.format.parameters import choice_words, file_number, file_value, hint, shown_label, shown_number, shown_text
+from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from model.config.parameters import Parameter
 
@@ -18,28 +19,6 @@ FINEST_STEP = 10**-PRECISION  # parameters that need finer ones are typed as tex
 ONE_EACH = " Here one for each road wheel, front first."
 IMAGINARY = "vehicle.imaginary_"
 IMAGINARY_SWITCH = "vehicle.imaginary_wheels.enabled"
-
-
-class Wishes(Protocol):
-    """What the panel asks of the session. Nothing of it blocks."""
-
-    def change(self, key: str, value: Any) -> None: ...
-
-    def load(self, preset: str) -> None: ...
-
-    def reset(self) -> None: ...
-
-    def undo(self) -> None: ...
-
-    def redo(self) -> None: ...
-
-    def upload_profile(self, name: str, content: bytes) -> None: ...
-
-    def add_to_road(self, road_type: str) -> None: ...
-
-    def take_from_road(self) -> None: ...
-
-    def fail(self, error: Exception) -> None: ...
 
 
 def _typed(parameter: Parameter) -> bool:
@@ -55,7 +34,7 @@ def _decimals(value: float) -> int:
 class Control:
     """Slider or box of one parameter. A parameter for each wheel has two: for one value, and for a list."""
 
-    def __init__(self, gui: viser.GuiApi, parameter: Parameter, value: Any, wishes: Wishes) -> None:
+    def __init__(self, gui: viser.GuiApi, parameter: Parameter, value: Any, actions: Actions) -> None:
         self.parameter = parameter
         label, help_text = shown_label(parameter), hint(parameter)
         self._list: Any = None
@@ -76,10 +55,10 @@ class Control:
                 step = shown_number(parameter, parameter.step)
                 self._one = gui.add_number(label, float(first), step=float(step), hint=help_text)
             self._one.precision = max(PRECISION, _decimals(first))
-        self._one.on_update(by_user(lambda event: wishes.change(parameter.key, self.value), wishes.fail))
+        self._one.on_update(by_user(lambda event: actions.change(parameter.key, self.value), actions.fail))
         if parameter.per_wheel:
             self._list = gui.add_text(label, "", hint=help_text + ONE_EACH)
-            self._list.on_update(by_user(lambda event: wishes.change(parameter.key, self.listed_value), wishes.fail))
+            self._list.on_update(by_user(lambda event: actions.change(parameter.key, self.listed_value), actions.fail))
             self.show(value)
 
     @property
@@ -97,11 +76,11 @@ class Control:
         """What the box for a list says."""
         return None if self._list is None else file_value(self.parameter, self._list.value)
 
-    def was_moved_to_end(self, wished: Any) -> bool:
+    def was_moved_to_end(self, requested: Any) -> bool:
         """Whether the slider stands at its end because the page moved it there from the value requested, beyond it."""
-        if not self.parameter.what_if or not isinstance(wished, int | float):
+        if not self.parameter.what_if or not isinstance(requested, int | float):
             return False
-        value, shown = self._one.value, shown_number(self.parameter, wished)
+        value, shown = self._one.value, shown_number(self.parameter, requested)
         return value == self._one.max < shown or value == self._one.min > shown
 
     def show(self, value: Any) -> None:

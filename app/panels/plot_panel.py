@@ -16,10 +16,11 @@ from typing import Any
 import viser
 
 from app.format.colours import Palette, wheel_palette
+from app.panels.actions import Actions
 from app.panels.charts import Charts
 from app.panels.page_layout import chart_height, spectrum_height
 from app.panels.plot_page import now_html, plot_page, tab_html
-from app.panels.spectrum_panel import BELOW_CHART, Analyst, SpectrumPanel
+from app.panels.spectrum_panel import BELOW_CHART, SpectrumPanel
 from app.plots.curves import Plot, load_plots
 from app.plots.ride import ride_plots
 from app.tabs.about import about_html
@@ -51,7 +52,7 @@ class Part:
 class PlotPanel:
     """Tabs in a panel of a client's interface. `runs_tab` is left empty, for others to fill."""
 
-    def __init__(self, client: viser.ClientHandle, panel: Any, page_height: int, dark: bool, analyst: Analyst) -> None:
+    def __init__(self, client: viser.ClientHandle, panel: Any, page_height: int, dark: bool, actions: Actions) -> None:
         self._client, self._page_height, self._dark = client, page_height, dark
         self._run: Trajectory | None = None
         self._baseline: Trajectory | None = None
@@ -76,7 +77,7 @@ class PlotPanel:
             self._headline = gui.add_html("")
             self._comfort = gui.add_html("", order=float("inf"))
         self._loads, self._ride = Charts(gui, tabs[LOADS]), Charts(gui, tabs[RIDE])
-        self.spectrum = SpectrumPanel(gui, tabs[SPECTRUM], analyst)
+        self.spectrum = SpectrumPanel(gui, tabs[SPECTRUM], actions)
         with tabs[LOAD_MAP]:
             self._map = gui.add_html("")
         with tabs[TRUST]:

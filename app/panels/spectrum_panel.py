@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from typing import Any, Protocol
+from typing import Any
 
 import viser
 
+from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.panels.charts import Charts
 from app.panels.plot_page import marks_html
@@ -23,20 +24,10 @@ NO_MODE = "– the run –"
 BELOW_CHART = 1e9  # order of what stands there: a chart made anew goes to the end of those without
 
 
-class Analyst(Protocol):
-    """What the panel asks of the session."""
-
-    def redraw_spectrum(self) -> None: ...
-
-    def show_mode(self) -> None: ...
-
-    def fail(self, error: Exception) -> None: ...
-
-
 class SpectrumPanel:
     """Fills a container (a tab) of `gui`."""
 
-    def __init__(self, gui: viser.GuiApi, container: Any, analyst: Analyst) -> None:
+    def __init__(self, gui: viser.GuiApi, container: Any, actions: Actions) -> None:
         self._modes: Modes | None = None
         with container:
             self._marks = gui.add_html("")
@@ -59,8 +50,8 @@ class SpectrumPanel:
             self._table = gui.add_html("", order=float("inf"))
         self._charts = Charts(gui, container)
         for box in (self._kind, self._place):
-            box.on_update(by_user(lambda event: analyst.redraw_spectrum(), analyst.fail))
-        self._choice.on_update(by_user(lambda event: analyst.show_mode(), analyst.fail))
+            box.on_update(by_user(lambda event: actions.redraw_spectrum(), actions.fail))
+        self._choice.on_update(by_user(lambda event: actions.show_mode(), actions.fail))
 
     def show(self, run: Trajectory, baseline: Trajectory | None, colour: str, height: int) -> None:
         """Show a run, beside its baseline, in a CSS colour and a chart of a height, px."""

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any, Protocol
+from typing import Any
 
 from app.runs.history import REST, Changes, Kept, Runs, run_name
 from app.runs.request import Finished, Request, first_request, same
+from app.runs.runner import Runner
 from app.runs.storage import PRESETS, State, state_text
 from app.session.window import Window
 from model.config.config import Config, ConfigError
@@ -20,29 +21,12 @@ COMPARE_EVERY = 0.3  # s from one table of figures to the next while runs follow
 CALM = 0.3  # s … or without another run when it is not
 
 
-class Wishing(Protocol):
-    """What the desk asks of the runner."""
+class Workspace:
+    """Shows what it keeps in the window, and requests runs. Times are monotonic, in s."""
 
-    @property
-    def latest(self) -> Request: ...
-
-    def change(self, update: Callable[[Request], Request]) -> None: ...
-
-
-class Helper(Protocol):
-    """What the desk asks of the porter; neither blocks."""
-
-    def remember(self, state: str) -> None: ...
-
-    def run_again(self, config: Config) -> None: ...
-
-
-class Desk:
-    """Shows what it keeps in the window, and requests runs."""
-
-    def __init__(self, window: Window, runner: Wishing, presets: Mapping[str, Config], helper: Helper) -> None:
+    def __init__(self, window: Window, runner: Runner, presets: Mapping[str, Config]) -> None:
         """presets: name -> configuration."""
-        self._window, self._runner, self._helper = window, runner, helper
+        self._window, self._runner = window, runner
         self._presets = dict(presets)
         self._own: list[str] = []  # names of the user's presets, oldest first
         self._start = runner.latest
@@ -111,8 +95,6 @@ class Desk:
 
     def tick(self, now: float) -> None:
         """Do what waits for a moment of rest; `now`, s."""
-        if self._baseline is not None and self._baseline.run is None:
-            self._helper.run_again(self._baseline.config)
         if self._good is not None and len(self._good.trajectory.t):
             seen = self._window.runs_in_front and now - self._compared_at >= COMPARE_EVERY
             rests = not self._rested and now - self._good_at >= REST and self._settled(self._good.request)
@@ -121,8 +103,23 @@ class Desk:
             if rests:
                 self._rested = True
                 self._keep(self._good)
-        if self._restored and self._news_at is not None and now - self._news_at >= REST:
-            self._remember()
+
+    @property
+    def missing_run(self) -> Config | None:
+        """The configuration of a baseline whose run is to be made again, for `made_again`; None: there is no such."""
+        return None if self._baseline is None or self._baseline.run is not None else self._baseline.config
+
+    def news(self, now: float) -> str | None:
+        """What the browser is to store, once when it is new and has rested; None: nothing. `now`, s."""
+        if not self._restored or self._news_at is None or now - self._news_at < REST:
+            return None
+        self._news_at = None
+        own = [self._presets[name] for name in self._own]
+        state = state_text(self._started_with, self._changes.present, own, self._runs, self._baseline, self._dark)
+        if state == self._stored:
+            return None
+        self._stored = state
+        return state
 
     def _came_true(self, request: Request, now: float) -> None:
         if self._settled(request):
@@ -167,8 +164,8 @@ class Desk:
         self._set_baseline(self._keep(self._good))
         self._request(other.request)
 
-    def clear(self) -> None:
-        """Compare no more."""
+    def clear_baseline(self) -> None:
+        """Compare with no run."""
         self._set_baseline(None)
 
     def recall(self, number: int) -> None:
@@ -186,7 +183,7 @@ class Desk:
         self._runs.delete(number)
         if self._kept is not None and self._kept.number == number:
             self._kept, self._rested = None, True  # not to be kept again at once
-        self._news()
+        self._note_news()
 
     def rename(self, name: str) -> None:
         """Name the run that is shown, and keep it."""
@@ -195,7 +192,7 @@ class Desk:
         self._kept = self._runs.rename(self._keep(self._good).number, name)
         if self._baseline is not None and self._baseline.number == self._kept.number:
             self._baseline = self._kept
-        self._news()
+        self._note_news()
 
     def take_in(self, run: Trajectory, name: str) -> None:
         """Keep a run from outside, and make it the baseline."""
@@ -208,7 +205,7 @@ class Desk:
             self._complete(run)
         elif self._baseline is not None and self._baseline.config == config:
             self._window.say("No baseline", f"{self._baseline.name} cannot be run again.")
-            self.clear()
+            self.clear_baseline()
 
     def _complete(self, run: Trajectory) -> None:
         """Put a run where only its configuration was left."""
@@ -219,16 +216,16 @@ class Desk:
 
     def _keep(self, good: Finished) -> Kept:
         self._kept = self._runs.keep(good.request, good.trajectory)
-        self._news()
+        self._note_news()
         return self._kept
 
     def _set_baseline(self, run: Kept | None) -> None:
         self._baseline = run
         self._window.show_baseline(self.baseline)
         self._compared, self._compared_at = False, 0.0
-        self._news()
+        self._note_news()
 
-    def _news(self) -> None:
+    def _note_news(self) -> None:
         """Show runs and baseline, and have the browser store them soon."""
         self._news_at = 0.0
         self._show()
@@ -256,7 +253,7 @@ class Desk:
 
     # ── Configurations ──
 
-    def use(self, config: Config) -> None:
+    def use_configuration(self, config: Config) -> None:
         """Request a configuration from outside: for changes to the present preset if it has that one's name."""
         base = self._runner.latest.base
         self._request(first_request(base, config) if config.name == base.name else Request(config))
@@ -340,11 +337,3 @@ class Desk:
         if state.request is not None and not same(state.request, latest):
             self._request(state.request)
             self._window.say("Welcome back", "All parameters are as you left them. Undo leads back to the start.")
-
-    def _remember(self) -> None:
-        self._news_at = None
-        own = [self._presets[name] for name in self._own]
-        stored = state_text(self._started_with, self._changes.present, own, self._runs, self._baseline, self._dark)
-        if stored != self._stored:
-            self._stored = stored
-            self._helper.remember(stored)

@@ -84,7 +84,7 @@ def simulate_at_once(
     return make_run(config)
 
 
-class FakeScene:
+class FakeView:
     """A 3-D view that remembers what it was told."""
 
     def __init__(self, client: viser.ClientHandle, dark: bool) -> None:
@@ -293,7 +293,7 @@ def explore() -> Iterator[Callable[..., Explorer]]:
     started: list[Explorer] = []
 
     def start(config: Config | None = None, preset: str = "paper", **session: Any) -> Explorer:
-        session = {"run": simulate_at_once, "make_scene": FakeScene} | session
+        session = {"run": simulate_at_once, "make_view": FakeView} | session
         started.append(Explorer(config or load_config("paper"), preset, port=0, **session))
         return started[-1]
 

@@ -110,7 +110,7 @@ def measure() -> dict[str, tuple[float, str]]:
         watched(Window, "show_run", on_show),
         watched(viser.ClientHandle, "flush", on_flush),
     ):
-        server = Server(load_config("paper"), "paper", port=0, run=watch.run, make_scene=EmptyStage)
+        server = Server(load_config("paper"), "paper", port=0, run=watch.run, make_view=EmptyStage)
         try:
             explorer = Explorer(browser.new_page(viewport={"width": 1280, "height": 720}))
             explorer.open(f"{server.address}/?fixedDpr=0.5")

@@ -107,7 +107,7 @@ def test_a_hidden_tab_leads_to_a_message_and_the_next_picture_can_be_taken(
             lambda count=count: len([n for n in tab.notifications if n["title"] == "No picture"]) == count,
             "a message",
         )
-        wait_for(lambda: "trackride-errand" not in trackride_threads(), "the errand to end")
+        wait_for(lambda: "trackride-job" not in trackride_threads(), "the job to end")
     assert downloads(tab) == []
 
 
@@ -116,7 +116,7 @@ def test_a_tab_that_closes_during_a_picture_leaves_nothing_behind(explore: Any, 
     wait_for(lambda: tab.shows_run(1))
     tab.press("Screenshot")
     wait_for(lambda: [m for m in tuple(tab.messages) if m["type"] == "GetRenderRequestMessage"], "the request")
-    assert "trackride-errand" in trackride_threads()
+    assert "trackride-job" in trackride_threads()
     tab.press("Screenshot")
     wait_for(lambda: [n for n in tab.notifications if n["title"] == "One at a time"])
     began = time.monotonic()

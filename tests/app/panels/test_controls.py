@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Any
+from unittest.mock import create_autospec
 
 import pytest
 import viser
 
-from app.panels.parameter_panel import ControlPanel
+from app.panels.actions import Actions
+from app.panels.parameter_panel import ParameterPanel
 from model.config.config import Config, load_config
 from model.config.parameters import NOTES, PARAMETER, PARAMETERS
 from tests.app.conftest import as_typed
@@ -17,31 +19,13 @@ PAPER = load_config("paper")
 STIFFNESS = "vehicle.road_suspension.stiffness"
 
 
-class Asked:
-    """Wishes that are only noted."""
+def actions() -> Any:
+    """Whatever is asked for is let go; errors are raised."""
 
-    def __init__(self) -> None:
-        self.changes: list[tuple[str, Any]] = []
-
-    def change(self, key: str, value: Any) -> None:
-        self.changes.append((key, value))
-
-    def load(self, preset: str) -> None: ...
-
-    def reset(self) -> None: ...
-
-    def undo(self) -> None: ...
-
-    def redo(self) -> None: ...
-
-    def upload_profile(self, name: str, content: bytes) -> None: ...
-
-    def add_to_road(self, road_type: str) -> None: ...
-
-    def take_from_road(self) -> None: ...
-
-    def fail(self, error: Exception) -> None:
+    def fail(error: Exception) -> None:
         raise error
+
+    return create_autospec(Actions, instance=True, fail=fail)
 
 
 @pytest.fixture(scope="module")
@@ -51,9 +35,9 @@ def server() -> Iterator[viser.ViserServer]:
     server.stop()
 
 
-def panel(server: viser.ViserServer, config: Config = PAPER) -> ControlPanel:
+def panel(server: viser.ViserServer, config: Config = PAPER) -> ParameterPanel:
     server.gui.reset()
-    controls = ControlPanel(server.gui, {"paper": config}, "paper", config, Asked())
+    controls = ParameterPanel(server.gui, {"paper": config}, "paper", config, actions())
     controls.fill()
     return controls
 
@@ -149,7 +133,7 @@ def test_rates_of_the_torsion_bar_are_shown_in_its_units(server: viser.ViserServ
 def test_presets_with_the_same_title_can_be_told_apart(server: viser.ViserServer) -> None:
     server.gui.reset()
     config = PAPER.replace({"drive.speed_kmh": 30})
-    ControlPanel(server.gui, {"paper": PAPER, "mine.yaml": config}, "mine.yaml", config, Asked())
+    ParameterPanel(server.gui, {"paper": PAPER, "mine.yaml": config}, "mine.yaml", config, actions())
     dropdowns = [handle for handle in _handles(server) if getattr(handle, "label", "") == "Preset"]
     assert dropdowns[0].options == ("Paper vehicle (paper)", "Paper vehicle (mine.yaml)")
     assert dropdowns[0].value == "Paper vehicle (mine.yaml)"

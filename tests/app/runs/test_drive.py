@@ -23,7 +23,7 @@ from model.road.road import Road
 from model.simulation.drive import LiveDrive
 from model.simulation.integrate import STATUS, Status
 from model.simulation.trajectory import Trajectory
-from tests.app.conftest import FakeScene, Tab, make_run, simulate_at_once, trackride_threads, wait_for
+from tests.app.conftest import FakeView, Tab, make_run, simulate_at_once, trackride_threads, wait_for
 
 PAPER = load_config("paper")
 SPEED = "drive.speed_kmh"
@@ -264,7 +264,7 @@ def test_a_tab_drives_on_with_sliders_plots_and_player(explore: Any, open_tab: A
     explorer = explore()
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
-    scene: FakeScene = explorer.sessions[0]._window.scene
+    scene: FakeView = explorer.sessions[0]._window.view
     tab.use("Mode", "○ Drive")
     wait_for(lambda: tab.widget("Mode")["props"]["options"][1] == "● Drive", "the mode to show")
     wait_for(lambda: "m · " in tab.widget("Driven")["value"])
@@ -297,7 +297,7 @@ def test_a_page_in_the_background_stands_still(explore: Any, open_tab: Any) -> N
     explorer = explore()
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
-    scene: FakeScene = explorer.sessions[0]._window.scene
+    scene: FakeView = explorer.sessions[0]._window.view
     tab.use("In view", False)
     wait_for(lambda: not explorer.sessions[0]._in_view)
     pause()

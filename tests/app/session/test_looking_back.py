@@ -13,7 +13,7 @@ from app.tabs.trust import trust_html
 from model.analysis.ride import suspension_travel
 from model.config.config import load_config
 from model.simulation.simulate import simulate
-from tests.app.conftest import FakeScene, Tab, wait_for
+from tests.app.conftest import FakeView, Tab, wait_for
 from tests.app.runs.test_drive import Clock
 from tests.app.session.test_transfers import answer_renders, download, renders
 
@@ -30,7 +30,7 @@ def test_stepping_back_pauses_the_drive_and_shows_its_past(explore: Any, open_ta
     explorer = explore()
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
-    scene: FakeScene = explorer.sessions[0]._window.scene
+    scene: FakeView = explorer.sessions[0]._window.view
     drive(tab, 0.5)
     tab.press("Ten steps back")
     wait_for(lambda: "look back" in tab.status and scene.runs[-1].t[0] == 0.0, "the past")
@@ -46,7 +46,7 @@ def test_stepping_back_pauses_the_drive_and_shows_its_past(explore: Any, open_ta
     tab.press("Play or pause")
     wait_for(lambda: scene.times[-1] > end + 0.1, "the drive to go on")
     assert scene.runs[-1].t[-1] < end + 5.0
-    assert not explorer.sessions[0]._window._notices
+    assert not explorer.sessions[0]._window._notifications
 
 
 def test_tabs_that_cost_more_follow_a_drive_and_say_which_stretch_they_show(explore: Any, open_tab: Any) -> None:
@@ -103,7 +103,7 @@ def test_a_movie_of_a_pause_films_the_past_and_leaves_the_drive_alone(
     explorer = explore()
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
-    scene: FakeScene = explorer.sessions[0]._window.scene
+    scene: FakeView = explorer.sessions[0]._window.view
     drive(tab, 0.3)
     tab.press("Play or pause")
     wait_for(lambda: "look back" in tab.status)

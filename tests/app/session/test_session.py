@@ -19,7 +19,7 @@ from app.server import Explorer
 from model.config.config import Config, load_config
 from model.dynamics.equilibrium import NoEquilibriumError
 from model.simulation.trajectory import Trajectory
-from tests.app.conftest import FakeScene, Tab, make_run, simulate_at_once, trackride_threads, wait_for
+from tests.app.conftest import FakeView, Tab, make_run, simulate_at_once, trackride_threads, wait_for
 
 PAPER = load_config("paper")
 SPEED = "drive.speed_kmh"
@@ -339,7 +339,7 @@ def test_a_diverged_run_shows_its_good_part_and_advice(explore: Any, open_tab: A
 def test_errors_are_shown_and_logged_and_do_not_end_the_session(
     explore: Any, open_tab: Any, caplog: pytest.LogCaptureFixture
 ) -> None:
-    class Breaking(FakeScene):
+    class Breaking(FakeView):
         def show(self, trajectory: Trajectory) -> None:
             if trajectory.config.drive.speed_kmh == 20:
                 raise RuntimeError("the scene broke")
@@ -350,7 +350,7 @@ def test_errors_are_shown_and_logged_and_do_not_end_the_session(
             raise ValueError("the run broke")
         return make_run(config)
 
-    tab: Tab = open_tab(explore(run=run, make_scene=Breaking))
+    tab: Tab = open_tab(explore(run=run, make_view=Breaking))
     wait_for(lambda: tab.shows_run(1))
     with caplog.at_level(logging.ERROR, "trackride"):
         for speed, text in ((20, "the scene broke"), (25, "the run broke")):
@@ -364,14 +364,14 @@ def test_errors_are_shown_and_logged_and_do_not_end_the_session(
 
 
 def test_an_error_in_every_frame_is_told_once(explore: Any, open_tab: Any, caplog: pytest.LogCaptureFixture) -> None:
-    class Breaking(FakeScene):
+    class Breaking(FakeView):
         def draw(self, time: float) -> None:
             self.times.append(time)
             raise RuntimeError("cannot draw")
 
-    explorer: Explorer = explore(make_scene=Breaking)
+    explorer: Explorer = explore(make_view=Breaking)
     tab: Tab = open_tab(explorer)
-    scene: Any = wait_for(lambda: explorer.sessions, "a session")[0]._window.scene
+    scene: Any = wait_for(lambda: explorer.sessions, "a session")[0]._window.view
     with caplog.at_level(logging.ERROR, "trackride"):
         wait_for(lambda: len(scene.times) > 5, "frames")
         wait_for(lambda: tab.notifications, "a notification")
@@ -412,7 +412,7 @@ def test_playback_moves_on_and_obeys(explore: Any, open_tab: Any) -> None:
     explorer: Explorer = explore()
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
-    scene = explorer.sessions[0]._window.scene
+    scene = explorer.sessions[0]._window.view
     wait_for(lambda: len(scene.times) > 5)
     assert len(set(scene.times)) > 3
     assert scene.threads == {"trackride-view"}
@@ -436,7 +436,7 @@ def test_view_switches_reach_the_scene_on_the_view_thread(explore: Any, open_tab
     explorer: Explorer = explore()
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
-    scene = explorer.sessions[0]._window.scene
+    scene = explorer.sessions[0]._window.view
     tab.use("Load arrows", False)
     tab.use("Look from", "Front")
     tab.press("Follow the vehicle, or not")

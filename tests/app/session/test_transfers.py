@@ -113,7 +113,7 @@ def test_a_transparent_picture_has_neither_sky_nor_ground(explore: Any, open_tab
     explorer = explore()
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
-    scene: Any = explorer.sessions[0]._window.scene
+    scene: Any = explorer.sessions[0]._window.view
     tab.use("Transparent", True)
     tab.press("Screenshot")
     wait_for(lambda: [m for m in tuple(tab.messages) if m["type"] == "GetRenderRequestMessage"], "a request")
@@ -131,7 +131,7 @@ def test_a_movie_films_the_run_and_playback_goes_on(
     explorer = explore()
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
-    scene: Any = explorer.sessions[0]._window.scene
+    scene: Any = explorer.sessions[0]._window.view
     tab.use("Time, s", 1.0)
     wait_for(lambda: scene.times[-1:] == [1.0])
     tab.use("In motion", "Movie")
@@ -208,7 +208,7 @@ def test_an_uploaded_run_becomes_the_baseline(explore: Any, open_tab: Any) -> No
     explorer = explore()
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
-    scene: Any = explorer.sessions[0]._window.scene
+    scene: Any = explorer.sessions[0]._window.view
     run = make_run(PAPER.replace({"drive.speed_kmh": 44}))
     upload(tab, "Open a run as baseline", "mine.npz", run.to_bytes(".npz"))
     wait_for(lambda: scene.ghosts and scene.ghosts[-1], "the ghost")
@@ -242,11 +242,11 @@ def test_files_of_any_content_lead_to_a_message(monkeypatch: pytest.MonkeyPatch)
 
 def test_an_error_in_a_job_is_told_and_the_next_one_begins(monkeypatch: pytest.MonkeyPatch) -> None:
     errors: list[Exception] = []
-    errands = app.session.background.Errands(errors.append)
-    assert errands.start(lambda: 1 / 0)
-    wait_for(lambda: errors and not errands.busy)
+    job = app.session.background.BackgroundJob(errors.append)
+    assert job.start(lambda: 1 / 0)
+    wait_for(lambda: errors and not job.busy)
     done: list[bool] = []
-    assert errands.start(lambda: wait_for(errands.stopped) and done.append(True))
-    assert not errands.start(lambda: None)
-    errands.close()
+    assert job.start(lambda: wait_for(job.stopped) and done.append(True))
+    assert not job.start(lambda: None)
+    job.close()
     assert done == [True]

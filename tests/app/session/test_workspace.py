@@ -119,7 +119,7 @@ def test_a_pinned_run_stays_in_plots_scene_and_table(explore: Any, open_tab: Any
     explorer = explore()
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
-    scene: Any = explorer.sessions[0]._window.scene
+    scene: Any = explorer.sessions[0]._window.view
     tab.press("Pin this run as the baseline")
     wait_for(lambda: scene.ghosts, "the ghost")
     assert scene.ghosts[-1].config.drive.speed_kmh == 15
@@ -250,7 +250,7 @@ def test_runs_and_baseline_come_back_with_the_browser(explore: Any, open_tab: An
     wait_for(lambda: set(colours) <= set(style(again)), "their colours")
     wait_for(lambda: "Baseline ● Paper vehicle" in text_of(html(again, "trackride-compared")))
     wait_for(lambda: "+100 %" in html(again, "trackride-figures"), "the comparison with the baseline")
-    scene: Any = explorer.sessions[-1]._window.scene
+    scene: Any = explorer.sessions[-1]._window.view
     assert scene.ghosts[-1].config.drive.speed_kmh == 15
     assert 20 not in {config.drive.speed_kmh for config in made}  # nobody has asked for that run yet
     again.use("the <b>quick</b> one", "Compare")
@@ -290,7 +290,7 @@ def test_the_look_comes_back(explore: Any, open_tab: Any) -> None:
     wait_for(lambda: json.loads(storage["trackride"])["dark"], "the look to be stored")
     again: Tab = open_tab(explorer, storage=storage)
     wait_for(lambda: again.widget("Dark")["value"] is True, "the look of the last visit")
-    wait_for(lambda: explorer.sessions[-1]._window.scene.dark)
+    wait_for(lambda: explorer.sessions[-1]._window.view.dark)
 
 
 def test_the_browsers_look_is_taken_until_another_is_chosen(explore: Any, open_tab: Any) -> None:
@@ -299,13 +299,13 @@ def test_the_browsers_look_is_taken_until_another_is_chosen(explore: Any, open_t
     wait_for(lambda: tab.shows_run(1) and tab.widget("Dark")["value"] is False)
     tab.use("Dark pages", True)
     wait_for(lambda: tab.widget("Dark")["value"] is True, "the browser's look")
-    wait_for(lambda: explorer.sessions[-1]._window.scene.dark)
+    wait_for(lambda: explorer.sessions[-1]._window.view.dark)
     wait_for(lambda: json.loads(storage["trackride"])["dark"] is None)
     tab.use("Dark", False)
     wait_for(lambda: json.loads(storage["trackride"])["dark"] is False, "the choice to be stored")
     again: Tab = open_tab(explorer, storage=storage)
     again.use("Dark pages", True)
-    wait_for(lambda: again.shows_run(1) and explorer.sessions[-1]._desk._prefers_dark)
+    wait_for(lambda: again.shows_run(1) and explorer.sessions[-1]._workspace._prefers_dark)
     wait_for(lambda: rows(again) == ["Paper vehicle"])
     assert again.widget("Dark")["value"] is False
 
