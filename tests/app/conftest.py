@@ -43,6 +43,12 @@ def wait_for(condition: Callable[[], Any], what: str = "it") -> Any:
     raise AssertionError(f"waited {PATIENCE:g} s for {what}")
 
 
+def pass_frames(explorer: Explorer, count: int = 4) -> None:
+    """Until the view of the newest tab has been drawn so many times, or would have been."""
+    for _ in range(count):
+        explorer.sessions[-1].show_now(lambda: None)
+
+
 def trackride_threads() -> set[str]:
     """Names of the sessions' threads that are alive."""
     return {thread.name for thread in threading.enumerate() if thread.name.startswith("trackride")}

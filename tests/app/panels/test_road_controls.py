@@ -129,7 +129,8 @@ def test_a_profile_is_opened_in_a_tab(explore: Any, open_tab: Any) -> None:
     wait_for(lambda: "3 points, 3 m long, 0.1 m high" in tab.html("trackride-extent"), "what it is")
 
 
-def test_obstacles_are_added_and_edited_in_a_tab(explore: Any, open_tab: Any) -> None:
+def test_obstacles_are_added_and_edited_in_a_tab(explore: Any, open_tab: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.session.session.REFUSAL_DELAY", 0.1)
     tab: Tab = open_tab(explore())
     wait_for(lambda: tab.shows_run(1), "run 1")
     tab.use("Add", "Half round")

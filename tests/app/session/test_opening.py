@@ -20,16 +20,16 @@ def test_what_is_not_seen_at_first_waits_until_the_page_stands(
     explorer = explore()
     tab: Tab = open_tab(explorer, stands=False)
     wait_for(lambda: tab.shows_run(1) and tab.charts(), "the curves")
-    scene: FakeView = explorer.sessions[0]._window.view
+    view: FakeView = explorer.sessions[0]._window.view
 
     def labels() -> set[str]:
         return {as_typed(widget["props"].get("label") or "") for widget in tuple(tab.widgets.values())}
 
     assert {"Speed, km/h", "Preset", "Export", "Vehicle"} <= labels()
     assert "Hull mass, kg" not in labels()
-    assert not scene.runs
+    assert not view.runs
     tab.use("Tabs in front", "Loads")
-    wait_for(lambda: scene.runs and scene.times, "the vehicle")
+    wait_for(lambda: view.runs and view.times, "the vehicle")
     tab.find("Hull mass, kg")
     tab.press("Play or pause")
 
