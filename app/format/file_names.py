@@ -27,5 +27,5 @@ def file_name(config: Config, title: str, changes: Mapping[str, Any], detail: st
 
 
 def _plain(text: str) -> str:
-    """Small letters, digits, hyphens and decimal points; nothing that a file system could take amiss."""
+    """Small letters, digits, hyphens and decimal points; nothing that a file system does not allow."""
     return re.sub(r"(?<!\d)\.|\.(?!\d)|[^a-z0-9.]+", "-", text.lower()).strip("-")

@@ -63,7 +63,7 @@ class Control:
 
     @property
     def value(self) -> Any:
-        """What the slider or box says, as in a file."""
+        """The value of the slider or box, as in a file."""
         shown = self._one.value
         if isinstance(shown, str) and self.parameter.kind == "choice":
             return next((choice for choice in self.parameter.choices if choice_words(choice) == shown), shown)
@@ -73,18 +73,18 @@ class Control:
 
     @property
     def listed_value(self) -> Any:
-        """What the box for a list says."""
+        """The values in the box for a list, as in a file."""
         return None if self._list is None else file_value(self.parameter, self._list.value)
 
     def was_moved_to_end(self, requested: Any) -> bool:
-        """Whether the slider stands at its end because the page moved it there from the value requested, beyond it."""
+        """Whether the page moved the slider to its end because the requested value lies beyond it."""
         if not self.parameter.what_if or not isinstance(requested, int | float):
             return False
         value, shown = self._one.value, shown_number(self.parameter, requested)
         return value == self._one.max < shown or value == self._one.min > shown
 
     def show(self, value: Any) -> None:
-        """Say this value, unless the control means it already."""
+        """Show this value, unless the control shows it already."""
         as_list = isinstance(value, tuple) and self._list is not None
         if self._list is not None:
             self._list.visible, self._one.visible = as_list, not as_list
@@ -112,13 +112,13 @@ class Control:
         return tuple(float(shown_number(self.parameter, bound)) for bound in (low, high, step))  # type: ignore[return-value]
 
     def widen(self, value: Any) -> None:
-        """Give the slider a range that has this value."""
+        """Widen the range of the slider so that this value is in it."""
         if self.parameter.what_if and not isinstance(value, tuple):
             shown = shown_number(self.parameter, value)
             self._one.min, self._one.max = min(self._one.min, shown), max(self._one.max, shown)
 
     def describe(self, parameter: Parameter) -> None:
-        """Say the same parameter in another unit."""
+        """Show the same parameter in another unit."""
         if parameter != self.parameter:
             self.parameter = parameter
             self._one.label, self._one.hint = shown_label(parameter), hint(parameter)
@@ -126,7 +126,7 @@ class Control:
                 self._list.label, self._list.hint = shown_label(parameter), hint(parameter) + ONE_EACH
 
     def enable(self, applies: bool) -> None:
-        """Let it be used, or show that it means nothing at present: a slider turns grey, a box of a road goes."""
+        """Let it be used, or show that it has no effect now: a slider turns grey, a box of a road disappears."""
         if self.parameter.roads and not self.parameter.what_if:
             self._one.visible = applies
         else:

@@ -1,4 +1,4 @@
-"""Folders for what goes out of the explorer and what comes in: pictures, files, configurations, presets."""
+"""The folders for downloads and uploads: pictures, files, configurations, presets."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How the panels share the page, whose size viser does not tell: it is read off the 3-D view's size."""
+"""How the panels share the page. viser does not tell the size of the page: it follows from that of the 3-D view."""
 
 from __future__ import annotations
 
@@ -60,12 +60,12 @@ class Screen:
         if abs(width * before[1] / (height * before[0]) - 1) < 0.005:
             self._scale *= height / before[1]  # viser draws coarser or finer now; the page is as it was
             return None
-        if height != before[1]:  # the page itself is another size: no seam was moved
+        if height != before[1]:  # the page itself has another size; the user moved no seam
             return self._shared(width, height)
         return _layout(width / self._scale, height / self._scale, self._right)
 
     def _shared(self, width: int, height: int) -> PageLayout:
-        """Sizes with the plots as wide as suits the page; of the view now, screen pixels."""
+        """Sizes with the plots as wide as suits the page. width, height: of the view now, screen pixels."""
         assert self._scale is not None
         view, before = width / self._scale, self._right
         wanted = min(max(RIGHT, PLOTS_SHARE * (LEFT + view + before + SEAMS)), WIDEST)
@@ -84,5 +84,5 @@ def chart_height(page_height: int, plots: int) -> int:
 
 
 def spectrum_height(page_height: int) -> int:
-    """Height of the spectrum's chart, px: half a page, or all that its boxes and the table of modes leave of it."""
+    """Height of the chart of the spectrum, px: half a page, or more if its boxes and the table of modes leave more."""
     return max(chart_height(page_height, 2), chart_height(page_height - MODES, 1))

@@ -58,7 +58,7 @@ class ParameterPanel:
         self.show(config)
 
     def fill(self) -> None:
-        """Fill the folders, which are closed at first. What stands already may have been moved since: it is left."""
+        """Fill the folders, which are closed at first. The sliders stay as they are: the user may have moved them."""
         for parameter in BOXED:
             make, value = KINDS.get(parameter.kind, Control), _value(self._shown, parameter)
             with self._folders[parameter.group]:
@@ -98,7 +98,7 @@ class ParameterPanel:
 
 
 def _say(control: Control, config: Config, *, touched: bool = False) -> None:
-    """What the configuration says of a control's parameter; its value not where the user may still move it."""
+    """Let a control show what the configuration says; not its value where the user may still move it."""
     key = control.parameter.key
     applies = control.parameter.applies_to(config.road.type)
     control.describe(config.parameter(key))

@@ -19,12 +19,12 @@ ANEW, GO = "|◀ Restart", "▶ Drive on"
 RUN, DRIVE = "Run", "Drive"
 MARKS = {True: "●", False: "○"}  # before the mode that is on, and the other
 
-# As tall as the box of text that takes its place in a drive: the rows below stay where they are.
+# As tall as the box of text that replaces it in a drive, so that the rows below stay where they are.
 AS_TALL = '<style>[id="TIME"] { min-height: 1.62rem; }</style>'
 
 
 class PlaybackPanel:
-    """A floating panel that shows a Playback or a drive, and passes on what the user wants of it."""
+    """A floating panel that shows a Playback or a drive, and passes on what the user asks for."""
 
     def __init__(self, gui: viser.GuiApi, actions: Actions) -> None:
         self._panel = gui.add_panel()
@@ -49,8 +49,8 @@ class PlaybackPanel:
             self._buttons: Any = gui.add_button_group(
                 "Playback",
                 _buttons(False, True),
-                hint="Space plays and pauses; ← and → step by 0.01 s, with Shift by 0.1 s. A drive that pauses can be "
-                "looked back on for its last seconds.",
+                hint="Space plays and pauses; ← and → step by 0.01 s, with Shift by 0.1 s. When a drive pauses, you "
+                "can look back on its last seconds.",
             )
             speed = gui.add_dropdown(
                 "Time scale",
@@ -79,12 +79,12 @@ class PlaybackPanel:
         self._panel.float(x=x, y=-GAP, width=width, height=height)
 
     def show(self, playback: Playback) -> None:
-        """Say what the playback of a run does."""
+        """Show the playback of a run."""
         self._show_mode(False, playback.playing)
         self._show_time(playback)
 
     def show_drive(self, playback: Playback, state: DriveState | None) -> None:
-        """Say how far the drive has come, or where in its past the user is."""
+        """Show how far the drive has come, or where in its past the user is."""
         self._show_mode(True, playback.playing)
         self._driven.value = "starting…" if state is None else driven_text(state, playback)
         if state is not None and state.stands:

@@ -1,6 +1,6 @@
-"""The plots of one browser tab and what is read beside them: tabs in a docked panel.
+"""The plots of one browser tab, and the tabs beside them, in a docked panel.
 
-The curves of a tab in front follow every run. Comfort, Spectrum, Load map and Trust cost more than a drag may take:
+The curves of a tab in front follow every run. Comfort, Spectrum, Load map and Trust take too long for a drag:
 they follow, one at a time, when no newer run has come for CALM; so do the curves of tabs behind, and all of it at once
 when its tab comes to the front. While a drive goes on, what is in front follows it once a second, and says which
 stretch of it it shows.
@@ -118,7 +118,7 @@ class PlotPanel:
         self.point_at(time)
 
     def settle(self) -> None:
-        """Bring one more part up to date when it is time for that. To be called ten times a second."""
+        """Bring one part up to date, if it is time for that. To be called ten times a second."""
         now = monotonic()
         calm = now - self._shown_at > CALM
         for part in sorted(self._behind(), key=self._is_behind):
@@ -141,7 +141,7 @@ class PlotPanel:
             self._now.content = now_html(time)
 
     def single_out(self, wheel: int | None) -> None:
-        """Let a wheel, in the model's order, stand alone among faded ones; None: all of them as they are."""
+        """Fade all curves but those of one wheel, in the model's order; None: fade none."""
         if wheel != self._wheel:
             self._wheel = wheel
             self._redraw()
@@ -163,21 +163,21 @@ class PlotPanel:
         self.redraw_spectrum()
 
     def _behind(self) -> list[Part]:
-        """Parts that do not show what is to be shown."""
+        """Parts that do not show the newest yet."""
         return [part for part in self._parts if part.version != self._version and self._run is not None]
 
     def _is_behind(self, part: Part) -> bool:
         return part.tab not in self.in_front
 
     def _follow(self) -> None:
-        """Show what follows every run."""
+        """Update the parts that follow every run."""
         self._version += 1
         for part in self._behind():
             if part.quick and part.tab in self.in_front:
                 self._update(part)
 
     def _redraw(self) -> None:
-        """Show the same curves in another way, and leave what costs more as it is."""
+        """Draw the same curves in another way, and leave what takes longer as it is."""
         slow = [part for part in self._parts if not part.quick and part.version == self._version]
         self._follow()
         for part in slow:

@@ -1,6 +1,6 @@
-"""Controls of the roads that are no number: a measured profile, and the parts of a sum.
+"""Controls of what is no number in a road: a measured profile, and the parts of a sum.
 
-They can be used as app.panels.controls.Control is.
+They are used like app.panels.controls.Control.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ EXTENT = "trackride-extent"
 
 
 class RoadControl:
-    """What both have in common: nothing that slides."""
+    """What both have in common: there is no slider."""
 
     listed_value = None
 
@@ -38,7 +38,7 @@ class RoadControl:
 
 
 class ProfileControl(RoadControl):
-    """A button that takes a CSV file, and what there is of points."""
+    """A button that takes a CSV file, and the extent of the present profile."""
 
     def __init__(self, gui: viser.GuiApi, parameter: Parameter, value: Any, actions: Actions) -> None:
         super().__init__(parameter, value)
@@ -59,12 +59,12 @@ class ProfileControl(RoadControl):
             self._extent.content = extent
 
     def enable(self, applies: bool) -> None:
-        """The extent comes and goes with the road; a profile can be opened on any."""
+        """Only a profile has an extent; but a profile can be opened on any road."""
         self._extent.visible = applies
 
 
 class PartsControl(RoadControl):
-    """The list of parts as text, and buttons that add to any road or take from it."""
+    """The list of parts as text, and buttons that add a part to any road or take one away."""
 
     def __init__(self, gui: viser.GuiApi, parameter: Parameter, value: Any, actions: Actions) -> None:
         super().__init__(parameter, value)

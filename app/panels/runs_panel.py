@@ -31,7 +31,9 @@ class RunsPanel:
         with container:
             self._style = gui.add_html("")
             self._heading = gui.add_html("")
-            self._name: Any = gui.add_text("Name", "", hint="Of the run that is shown: give it one and it is kept")
+            self._name: Any = gui.add_text(
+                "Name", "", hint="The name of the run that is shown; a run that you name is kept"
+            )
             baseline = gui.add_button_group(
                 "Baseline",
                 (PIN, SWAP, CLEAR),
@@ -71,7 +73,7 @@ class RunsPanel:
             self._name.value = name
 
     def _row(self, run: Kept) -> viser.GuiButtonGroupHandle:
-        """Name and buttons of a run, the newest on top."""
+        """A row with the name and the buttons of a run; the newest is on top."""
         actions, number = self._actions, run.number
         acts = {SHOW: actions.recall, COMPARE: actions.compare, DELETE: actions.delete}
         with self._folder:

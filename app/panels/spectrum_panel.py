@@ -1,4 +1,4 @@
-"""The tab "Spectrum": where the hull is shaken, and the vehicle's own modes, which can be shown in the 3-D view."""
+"""The tab "Spectrum": at which frequencies the hull moves, and the vehicle's modes, to be shown in the 3-D view."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from model.simulation.trajectory import Trajectory
 AMPLITUDE, DENSITY = "Amplitude, m/s²", "Power density, m²/s³"
 HULL, SEAT = "Centre of mass", "Driver's seat"
 NO_MODE = "– the run –"
-BELOW_CHART = 1e9  # order of what stands there: a chart made anew goes to the end of those without
+BELOW_CHART = 1e9  # order of what stands there; a chart that is made anew would otherwise come after it
 
 
 class SpectrumPanel:
@@ -75,13 +75,13 @@ class SpectrumPanel:
             self._choice.options = titles
 
     def offer_modes(self, on: bool) -> None:
-        """Whether a mode can be chosen: during a drive there is no run whose place it could take."""
+        """Let modes be chosen, or not: during a drive there is no run that a mode could replace."""
         if self._choice.disabled is on:
             self._choice.disabled = not on
 
     @property
     def chosen(self) -> Mode | None:
-        """The mode to be shown."""
+        """The mode that is chosen; None: the run."""
         titles = mode_titles(self._modes)
         value = self._choice.value
         return self._modes.swinging[titles.index(value)] if self._modes is not None and value in titles else None

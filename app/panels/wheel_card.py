@@ -17,7 +17,7 @@ ABSENT = "–"
 
 
 class WheelCard:
-    """A low panel along the view's upper edge, above the vehicle, there while a wheel is picked."""
+    """A low panel at the upper edge of the view, above the vehicle; it is there while a wheel is picked."""
 
     def __init__(self, gui: viser.GuiApi, actions: Actions) -> None:
         self._gui, self._actions = gui, actions
@@ -27,7 +27,7 @@ class WheelCard:
         self.wheel: int | None = None
 
     def pick(self, wheel: int | None) -> int | None:
-        """Turn to a wheel, in the model's order; None, or the one that is picked already: to none. The wheel then."""
+        """Pick a wheel, in the model's order; None, or the one that is picked already: none. Returns the picked one."""
         self.wheel = None if wheel == self.wheel else wheel
         if self.wheel is None and self._panel is not None:
             self._panel.remove()

@@ -1,4 +1,4 @@
-"""What came of the user's changes: steps to go back and forth through, and the runs that are kept. Pure."""
+"""What the user has done: steps to undo and redo, and the runs that are kept. Pure."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from model.simulation.trajectory import Trajectory
 REST = 1.0  # s: changes of the same parameters that follow each other faster are one step
 STEPS = 200  # that can be undone
 RUNS = 20  # that are kept
-MEMORY = 200e6  # bytes of their trajectories, the newest run's aside
+MEMORY = 200e6  # bytes of their trajectories; the newest run does not count
 NAMED_CHANGES = 2  # in the name of a run; the others are counted
 NAME_LIMIT = 80  # characters of a name that the user gives
 RUN_COLOURS = (
@@ -27,7 +27,7 @@ RUN_COLOURS = (
 
 
 class Changes:
-    """Requests to go back and forth through. All changes of a drag are one step."""
+    """The requests that undo and redo lead to. All changes of a drag are one step."""
 
     def __init__(self, first: Request) -> None:
         self._steps = [first]
@@ -77,13 +77,13 @@ class Kept:
 
     @property
     def given_name(self) -> str:
-        """By the user; empty when it is called after its changes."""
+        """The name that the user gave; empty when the run is named after its changes."""
         return self.name if self.named else ""
 
 
 class Runs:
-    """The runs that are kept. Beyond RUNS of them the oldest without a name of the user's goes first; beyond MEMORY
-    the trajectories of the oldest go."""
+    """The runs that are kept. When there are more than RUNS, the oldest that the user has not named goes. When their
+    trajectories need more than MEMORY, those of the oldest go."""
 
     def __init__(self) -> None:
         self._kept: dict[int, Kept] = {}
@@ -107,16 +107,16 @@ class Runs:
         return next((kept for kept in self if kept.config == config), None)
 
     def keep(self, request: Request, run: Trajectory, name: str = "") -> Kept:
-        """Keep a run, unless one of the same configuration is kept already; that one, or the new one."""
+        """Keep a run, unless one of the same configuration is kept already. Returns the one that is kept."""
         self.complete(run)
         return self.find(run.config) or self._add(request, run.config, run, name, self._free_colour())
 
     def take_back(self, kept: Kept) -> Kept:
-        """Keep what was kept at an earlier visit, unless the same configuration is kept already, as `keep` does."""
+        """Keep again what was kept at an earlier visit; otherwise like `keep`."""
         return self.find(kept.config) or self._add(kept.request, kept.config, kept.run, kept.given_name, kept.colour)
 
     def complete(self, run: Trajectory) -> None:
-        """Give a run, made again, to what is kept of it."""
+        """Give a trajectory, made again, to the kept run of its configuration."""
         found = next((kept for kept in self if kept.run is None and kept.config == run.config), None)
         if found is not None:
             self._kept[found.number] = replace(found, run=run)
@@ -132,7 +132,7 @@ class Runs:
         return kept
 
     def rename(self, number: int, name: str) -> Kept:
-        """Give a run a name; without one it is called after its changes again."""
+        """Give a run a name; with an empty name it is named after its changes again."""
         kept, name = self._kept[number], plain_name(name)
         self._kept[number] = replace(kept, name=name or run_name(kept.request.base, kept.config), named=bool(name))
         return self._kept[number]
@@ -151,7 +151,7 @@ class Runs:
                 self._kept[kept.number] = replace(kept, run=None)
 
     def _free_colour(self) -> str:
-        """The first colour that the fewest runs have."""
+        """The first of the colours that the fewest runs have."""
         used = [kept.colour for kept in self]
         return min(RUN_COLOURS, key=used.count)
 
@@ -163,7 +163,7 @@ def size(kept: Kept) -> int:
 
 
 def plain_name(name: str) -> str:
-    """A name of the user's, on one line and not too long."""
+    """A name from the user, on one line and not too long."""
     return " ".join(name.split())[:NAME_LIMIT]
 
 
@@ -193,12 +193,12 @@ def differences(before: Config, after: Config) -> list[str]:
 
 
 def _named(parameter: Parameter, value: Any) -> str:
-    """A value that there was not before: another type of road brings it along."""
+    """A value that only the new type of road has."""
     return f"{parameter.label} {_words(parameter, value)} {parameter.shown_unit}".rstrip()
 
 
 def _difference(before: Parameter, old: Any, after: Parameter, new: Any) -> str:
-    """The unit once, unless the basis of the rates was changed and with it their unit."""
+    """Both values with the unit, once; twice where the unit has changed with the basis of the rates."""
     unit = f" {before.shown_unit}" if before.shown_unit != after.shown_unit and old is not None else ""
     return f"{after.label} {_words(before, old)}{unit} → {_words(after, new)} {after.shown_unit}".rstrip()
 

@@ -17,8 +17,8 @@ from app.runs.request import Driven, Failed, Finished, Outcome, Refused, Request
 from model.config.validation import ConfigError
 from model.dynamics.equilibrium import NoEquilibriumError
 
-NEARLY_DONE = 0.5  # part of a run after which a newer request lets it finish
-PATIENCE = 0.25  # s without a new curve after which a run is let finish, so that a long drag shows something…
+NEARLY_DONE = 0.5  # part of a run that is done; beyond it a newer request lets the run finish
+PATIENCE = 0.25  # s without a new curve after which a run may finish, so that a long drag shows something…
 LONGEST = 1.0  # s … unless it takes longer than this
 
 
@@ -57,7 +57,7 @@ class Runner:
             self._condition.notify()
 
     def withdraw(self, refused: Request, instead: Request) -> bool:
-        """Go back to an older request, which is not run again, unless there is a newer one than the refused."""
+        """Go back to an older request, which is not run again. False, and nothing is done, if a newer one has come."""
         with self._condition:
             if self._request.number != refused.number:
                 return False
@@ -124,7 +124,7 @@ class Runner:
         self._on_outcome()
 
     def _outcome_of(self, request: Request) -> Outcome | None:
-        """None when the run was stopped for a newer request, or at closing."""
+        """None: the run was stopped, for a newer request or at closing."""
         try:
             config = request.config()
             run = self._simulate(config, on_progress=self._note_progress, should_stop=self._should_stop)
@@ -150,7 +150,7 @@ class Runner:
         return not overdue or now - (self._began_at or now) > LONGEST
 
     def _drive_on(self) -> None:
-        """Frame by frame, until there is to be no drive any more."""
+        """Drive frame by frame, until the drive is to end."""
         driver: Driver | None = None
         good = self._request
         self._rolls = stands = False

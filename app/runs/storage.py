@@ -14,16 +14,22 @@ from model.config.config import Config, ConfigError, part_values
 PRESETS = 30  # of the user's own, at most
 LONGEST = 1_000_000  # characters of a text that is looked at: more than all presets and runs take
 REQUEST = "wish"  # key of the request: browsers have stored it under this name
-BAD = (ValueError, TypeError, KeyError, AttributeError, ConfigError)  # what comes of texts that others have written
+BAD = (
+    ValueError,
+    TypeError,
+    KeyError,
+    AttributeError,
+    ConfigError,
+)  # errors of reading a text that anybody may have written
 
 T = TypeVar("T")
 
 
 @dataclass(frozen=True)
 class State:
-    """What a tab is to find again."""
+    """What a tab finds again at its next visit."""
 
-    start: Config | None  # what the explorer had been started with
+    start: Config | None  # what the explorer was started with
     request: Request | None  # what was shown
     presets: tuple[Config, ...]  # the user's own, oldest first
     runs: tuple[Kept, ...]  # without their trajectories, oldest first
@@ -39,7 +45,7 @@ def state_text(
     baseline: Kept | None,
     dark: bool | None,
 ) -> str:
-    """All of it as JSON; of runs only how to make them again."""
+    """All of it as JSON; of runs only what is needed to make them again."""
     return json.dumps(
         {
             "start": start.values(),
@@ -54,7 +60,7 @@ def state_text(
 
 
 def state_from(text: str) -> State:
-    """What can be used of a text, whoever has written it. Raises ValueError when it is no state at all."""
+    """All that is valid in a text, which anybody may have written. Raises ValueError when it is no state at all."""
     if len(text) > LONGEST:
         raise ValueError(f"it is longer than {LONGEST} characters")
     try:

@@ -31,17 +31,17 @@ from model.simulation.trajectory import Trajectory
 
 VIEW_RATE = 30.0  # Hz: the 3-D view
 TEXT_RATE = 10.0  # Hz: numbers, time slider, time cursors …
-DRAG_TEXT_RATE = 3.0  # Hz: … while runs follow each other, whose curves the page has to draw meanwhile
-DRAG_PAUSE = 0.3  # s after which they do not any more
-REFUSAL_DELAY = 1.2  # s without another request until a bad value is refused: time to finish typing
-SEEN_WITHIN = 2.0  # s in which what a background job has shown is drawn, or else it goes on without
+DRAG_TEXT_RATE = 3.0  # Hz: … and while runs follow each other: the page has their curves to draw
+DRAG_PAUSE = 0.3  # s without a new run after which a drag is over
+REFUSAL_DELAY = 1.2  # s from a bad value to its refusal if no other request comes: time to finish typing
+SEEN_WITHIN = 2.0  # s that a background job waits for something to be drawn; then it goes on without
 SAME_ERROR = 5.0  # s before the same error is logged and shown again
 
 log = logging.getLogger("trackride")
 
 
 class Session:
-    """The methods may be called on any thread and return at once, but for close."""
+    """All methods may be called on any thread. All return at once, except `close` and those for background jobs."""
 
     def __init__(
         self,
@@ -58,10 +58,10 @@ class Session:
         self._playback = Playback()
         self._driving = False  # on and on, instead of a run
         self._in_view = True  # the page is not in the background
-        self._intents: dict[str, Callable[[], None]] = {}  # what the view is to do: the newest of each kind
-        self._refused: Refused | None = None  # a bad request that is not yet spoken of
+        self._posted: dict[str, Callable[[], None]] = {}  # what the view's thread is to do: the newest of each kind
+        self._refused: Refused | None = None  # a bad request that the user has not been told of yet
         self._refuse_at = 0.0  # monotonic s
-        self._shown_at = self._told_at = -DRAG_PAUSE  # monotonic s: when a run was shown last, and numbers and times
+        self._shown_at = self._told_at = -DRAG_PAUSE  # monotonic s: when a run was shown last; numbers
 
         self._good: Finished | Driven | None = None  # what is shown
         self._steps = 0  # to be redone, or undone when negative; under the lock
@@ -164,7 +164,7 @@ class Session:
     def set_driving(self, on: bool) -> None:
         with self._lock:
             self._driving, self._playback.playing = on, True
-            self._playback.look_back(0.0, 0.0)  # what was shown before has no time in common with what comes
+            self._playback.look_back(0.0, 0.0)  # the times of what was shown before mean nothing now
             self._pace()
 
     def toggle_driving(self) -> None:
@@ -200,7 +200,7 @@ class Session:
         self.post("spectrum", lambda: self._window.redraw_spectrum())
 
     def show_mode(self) -> None:
-        """Show what the spectrum's tab says instead of the run, which stands still meanwhile."""
+        """Pause the run, and show the mode in its place."""
         with self._lock:
             if not self._driving:
                 self._playback.playing = False
@@ -245,7 +245,7 @@ class Session:
     def post(self, kind: str, act: Callable[[], None]) -> None:
         """Have the view's thread do something at its next frame; of each kind the newest counts."""
         with self._lock:
-            self._intents[kind] = act
+            self._posted[kind] = act
 
     @property
     def shown(self) -> Trajectory | None:
@@ -341,7 +341,7 @@ class Session:
 
     def _draw(self, elapsed: float, with_text: bool) -> None:
         with self._lock:
-            intents, self._intents = self._intents, {}
+            intents, self._posted = self._posted, {}
             steps, self._steps = self._steps, 0
             driving = self._driving
             if driving or not self._in_view:

@@ -1,4 +1,4 @@
-"""What goes out of one tab as downloads, and what comes in as uploads: on a thread of its own (background.py)."""
+"""Downloads and uploads of one tab, and what its browser stores; the work is done in background jobs."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ from model.config.config import Config, ConfigError, dump_config
 from model.config.parameters import PARAMETER
 from model.simulation.trajectory import Trajectory
 
-AT_REST = ("figure.png", "figure.svg", "replay", "movie")  # what shows one stretch of a drive and takes a while
-PAUSE_FIRST = "Pause the drive first (Space): what is shown then, its last seconds, is what you take home."
+AT_REST = ("figure.png", "figure.svg", "replay", "movie")  # these show one stretch of a drive and take a while to make
+PAUSE_FIRST = "Pause the drive first (Space): what is shown then, its last seconds, is what you download."
 NO_RUN = "A drive cannot be repeated from a file as a run can. Take CSV, or change from Drive to Run first."
 STORED = "trackride"  # key in the browser's storage
-STORAGE_PATIENCE = 60.0  # s in which a browser says what it has stored; afterwards that is overwritten
+STORAGE_PATIENCE = 60.0  # s that a browser has to tell what it has stored; after that we overwrite it
 
 log = logging.getLogger("trackride")
 
@@ -66,16 +66,16 @@ class Download:
     dark: bool
     time: float  # where in the run the playback is, s
     playing: bool
-    drive: DriveState | None  # of which `run` is the past
+    drive: DriveState | None  # `run` is its past
 
     def name(self, detail: str, suffix: str) -> str:
-        """Of a file."""
+        """A name for the file."""
         stretch = f"{detail} {self.stretch}".strip()
         return file_name(self.run.config, self.request.base.name, self.request.changes, stretch, suffix)
 
     @property
     def title(self) -> str:
-        """Of a page: what was run, and what was changed."""
+        """A title for a page: what was run, and what was changed."""
         name = run_name(self.request.base, self.run.config)
         whole = name if name == self.request.base.name else f"{self.request.base.name}: {name}"
         return f"{whole}, {self.stretch}" if self.stretch else whole
@@ -87,14 +87,14 @@ class Download:
 
     @property
     def refusal(self) -> Mapping[str, str]:
-        """What cannot be made of it, and why."""
+        """Which files cannot be made now, and why."""
         if self.drive is None:
             return {}
         return {"run.npz": NO_RUN} | ({} if self.drive.stands else dict.fromkeys(AT_REST, PAUSE_FIRST))
 
 
 class StoppedError(Exception):
-    """Nothing is made; the message says why."""
+    """No file was made; the message says why."""
 
 
 class Transfers:
@@ -123,7 +123,7 @@ class Transfers:
         }
 
     def send(self, what: str, download: Download) -> None:
-        """Make what is asked for, and let the browser download it."""
+        """Make a file, and let the browser download it."""
         if what in download.refusal:
             self._window.say("Nothing was downloaded", download.refusal[what])
             return
@@ -131,7 +131,7 @@ class Transfers:
         self._begin(partial(self._deliver, doing, partial(make, download)))
 
     def take_configuration(self, name: str, content: bytes) -> None:
-        """Request what an uploaded file says."""
+        """Request the configuration in an uploaded file."""
         try:
             config = configuration(name, content)
         except ConfigError as error:
@@ -140,19 +140,19 @@ class Transfers:
             self._workspace.use_configuration(config)
 
     def take_profile(self, name: str, content: bytes) -> None:
-        """Make the road of an uploaded CSV file."""
+        """Request the profile in an uploaded CSV file as the road."""
         self._begin(partial(self._measure, name, content))
 
     def take_run(self, name: str, content: bytes) -> None:
-        """Make the baseline of an uploaded file."""
+        """Make the run in an uploaded file the baseline."""
         self._begin(partial(self._unpack, name, content))
 
     def stop(self) -> None:
-        """Make no more of what is under way."""
+        """Stop making the file that is under way."""
         self._files.stop()
 
     def close(self) -> None:
-        """End the threads, unless a browser that still draws holds one."""
+        """End the jobs; wait for them, but not long for a browser that still draws a picture."""
         self._files.close()
         self._memory.close()
 
@@ -161,11 +161,11 @@ class Transfers:
         self._client.local_storage.set_item(STORED, state)
 
     def recollect(self) -> None:
-        """Go on where this browser was at its last visit, as soon as it says where."""
+        """Ask the browser what it has stored, and let the workspace restore it."""
         self._memory.start(self._ask_browser)
 
     def run_again(self, config: Config) -> None:
-        """Make a run for the workspace of which only the configuration is left, unless one is being made."""
+        """Make a run of which only the configuration is left, for the workspace. Nothing happens while one is made."""
         self._memory.start(partial(self._run_again, config))
 
     def _begin(self, job: Callable[[], None]) -> None:
@@ -205,13 +205,13 @@ class Transfers:
         return download.name("x".join(map(str, download.size)), ".png"), picture
 
     def _figure(self, suffix: str, download: Download) -> tuple[str, bytes]:
-        from app.reports.sheet import stamped_figure  # matplotlib takes a second
+        from app.reports.sheet import stamped_figure  # here: matplotlib takes a second to load
 
         try:
             picture = take_picture(self._client, *FIGURE_SIZE, "white")
         except NoPictureError:
             if download.drive is not None:
-                raise  # a vehicle drawn from its side would stand on the road of a run
+                raise  # the drawing in its place would show the road of a run, not of the drive
             picture = None
         page = stamped_figure(download.run, download.baseline, picture, download.title, suffix, download.time)
         return download.name("figure", suffix), page

@@ -39,7 +39,7 @@ from model.simulation.trajectory import Trajectory
 
 ROAD_EVERY = 0.35  # s between two side views of the road
 FOLDERS = "View", "Export", "Import and presets"
-LAID_OUT_WITHIN = 3.0  # s in which a page says that its panels stand, or else is taken to have them
+LAID_OUT_WITHIN = 3.0  # s in which a page tells that its panels are laid out; after that we take it that they are
 
 
 class VehicleView(Protocol):
@@ -86,15 +86,15 @@ class Window:
         make_view: Callable[[viser.ClientHandle, bool], VehicleView],
     ) -> None:
         self._client, self._actions = client, actions
-        self._dark = False  # until the browser has said how it is set
+        self._dark = False  # until the browser tells its setting
         self._run: Trajectory | None = None
         self._baseline: Trajectory | None = None
-        self._drive: DriveState | None = None  # the last of the drive that is shown
+        self._drive: DriveState | None = None  # the newest state of the drive that is shown
         self._drawn: tuple[int, float] | None = None  # run and time that the 3-D view shows
-        self._to_view: Trajectory | None = None  # a run that the 3-D view has not got yet
-        self._stands_at = monotonic() + LAID_OUT_WITHIN  # when the page has its panels, s
-        self._filled = False  # the page has what is not seen at first
-        self._mode: ModeShow | None = None  # in the run's place
+        self._to_view: Trajectory | None = None  # a run that the 3-D view does not have yet
+        self._stands_at = monotonic() + LAID_OUT_WITHIN  # when the panels of the page are laid out, s
+        self._filled = False  # the page also has what is not seen at first
+        self._mode: ModeShow | None = None  # shown in the place of the run
         self._run_number = 0
         self._road_due = 0.0  # monotonic s
         self._road_ahead = RoadAhead()
@@ -127,7 +127,7 @@ class Window:
         self.view.on_pick(actions.pick_wheel)
 
     def _fill(self) -> None:
-        """Add what is not seen at first: half of the page's work, and the rest is there sooner without it."""
+        """Add what is not seen at first. It is half of the page's work, and without it the rest appears sooner."""
         gui, actions = self._client.gui, self._actions
         view, out, into = self._folders
         with self._client.atomic():
@@ -180,7 +180,7 @@ class Window:
             self._notifications.forget("diverged")
 
     def show_baseline(self, baseline: Trajectory | None) -> None:
-        """Compare with this run from now on, or with None no more."""
+        """Compare with this run from now on; None: with no run."""
         self._end_mode()
         self._baseline = baseline
         if self._run is not None:
@@ -188,7 +188,7 @@ class Window:
         self.view.show_ghost(baseline)
 
     def show_mode(self) -> None:
-        """Show the mode that is chosen instead of the run, until the run moves on or another one comes."""
+        """Show the chosen mode instead of the run, until the run plays on or another run comes."""
         mode, run = self._plots.spectrum.chosen, self._run
         if mode is None or run is None or self._drive is not None or not len(run.t):
             self._end_mode()
@@ -205,7 +205,7 @@ class Window:
             self.view.show(self._run)
 
     def _leave_mode(self) -> None:
-        """Make ready for something else to be shown."""
+        """Show the mode no longer; something else will be shown."""
         if self._mode is not None:
             self._mode, self._drawn = None, None
             self.view.show_ghost(self._baseline)
@@ -219,7 +219,7 @@ class Window:
         self._controls.offer(presets, chosen)
 
     def refuse(self, refused: Refused, instead: Config) -> None:
-        """Say what is wrong with a request, and go back to the configuration that was good."""
+        """Say what is wrong with a request, and let the controls show a valid configuration instead."""
         body = " ".join(refusal(fault, refused.request.changes.get(fault.path), instead) for fault in refused.faults)
         self._notifications.show("refused", "Not possible", body, "red")
         self._controls.show(instead)
@@ -229,14 +229,14 @@ class Window:
         self._controls[key].show(value)
 
     def was_moved_to_end(self, key: str, requested: Any) -> bool:
-        """Whether a slider stands at its end because the page moved it there from the value requested, beyond it."""
+        """Whether the page moved a slider to its end because the requested value lies beyond it."""
         return self._controls[key].was_moved_to_end(requested)
 
     def report_failure(self, failed: Failed) -> None:
         self._notifications.show("refused", "No run", failed.message, "red")
 
     def show_status(self, under_way: tuple[int, float, float] | None) -> None:
-        """Say which run is shown, or how far the next is (number, part done, seconds so far)."""
+        """Say which run is shown, or how far the next one has come (number, part done, seconds so far)."""
         if self._drive is not None:
             self._controls.status.content = status_line("Drive", drive_facts(self._drive))
         elif self._mode is not None:
@@ -253,8 +253,8 @@ class Window:
     def draw(self, time: float, elapsed: float = 0.0) -> None:
         """The 3-D view at a time of the run, s, `elapsed` s of real time after it was drawn last.
 
-        Of a drive that goes on, each instant is drawn as it comes. A page that is still laying out its panels is not
-        given anything more yet.
+        Of a drive that goes on, each instant is drawn as it comes. A page that is still laying out its panels gets
+        nothing more yet.
         """
         if monotonic() < self._stands_at:
             return
@@ -312,7 +312,7 @@ class Window:
     # ── Looks ──
 
     def set_in_front(self, tabs: frozenset[str]) -> None:
-        """Tell which tabs of the plots are seen, and so that the page stands."""
+        """Take note of the tabs of the plots that are seen; from this we also know that the page is laid out."""
         self._stands_at = 0.0
         self._plots.set_in_front(tabs)
 
@@ -322,7 +322,7 @@ class Window:
         return RUNS in self._plots.in_front
 
     def fit_page(self) -> None:
-        """Sizes of the panels, when the page's has changed."""
+        """Change the sizes of the panels when the size of the page has changed."""
         camera = self._client.camera
         layout = self._screen.update(camera.image_width, camera.image_height)
         if layout is not None:
@@ -337,7 +337,7 @@ class Window:
         self.view.set_dark(dark)
 
     def pick_wheel(self, wheel: int | None) -> None:
-        """Show a wheel's card and its curve alone; None, or the wheel that is picked already: no wheel's."""
+        """Show the card of a wheel and fade the other curves; None, or the wheel that is picked already: no card."""
         self._plots.single_out(self._card.pick(wheel))
         self._show_wheel()
 
@@ -356,7 +356,7 @@ class Window:
         self._drawn = None
 
     def toggle_switch(self, switch: str) -> None:
-        """Turn a switch of the 3-D view over, and its checkbox."""
+        """Turn a switch of the 3-D view, and its checkbox, on if it is off, and off if it is on."""
         self.set_switch(switch, self._view_panel.toggle(switch))
 
     def show_surroundings(self, on: bool) -> None:
@@ -380,7 +380,7 @@ class Window:
         self._notifications.show("said", title, body, "blue")
 
     def show_faults(self, title: str, faults: ConfigError) -> None:
-        """All that is wrong with a configuration from outside."""
+        """Show all that is wrong with a configuration from outside."""
         show_faults(self._client.gui, title, faults, self._actions)
 
     def edit_yaml(self, config: Config) -> None:
@@ -388,7 +388,7 @@ class Window:
         YamlWindow(self._client.gui, config, self._actions)
 
     def show_progress(self, doing: str) -> None:
-        """What is being made for a download; empty: nothing."""
+        """Say what is being made for a download; empty: nothing."""
         self._notifications.progress(doing)
 
     def _resize(self, layout: PageLayout) -> None:

@@ -33,19 +33,21 @@ class Workspace:
         self._started_with = self._start.config()
         self._changes = Changes(self._start)
         self._runs = Runs()
-        self._good: Finished | None = None  # the run that is shown; None: a drive, or nothing yet
+        self._good: Finished | None = None  # the run that is shown; None: a drive, or no run yet
         self._good_at = 0.0  # when it came, s
         self._rested = False  # the user has rested on it
         self._kept: Kept | None = None  # the same, once it is kept
         self._before_drive = ""  # name of the run whose figures stay while a drive is shown
         self._baseline: Kept | None = None
-        self._compared = self._named = True  # the table of figures, and the name, are those of the run that is shown
+        self._compared = self._named = True  # the table of figures and the name belong to the run that is shown
         self._compared_at = 0.0  # when it was made, s
-        self._news_at: float | None = None  # when something came up that the browser is to store, s; None: nothing
+        self._news_at: float | None = (
+            None  # when there was something new for the browser to store, s; None: nothing new
+        )
         self._stored = ""
         self._dark: bool | None = None  # the look that the user has chosen
         self._prefers_dark = False
-        self._restored = False  # the browser has said what it has, and may be told anew
+        self._restored = False  # the browser has told what it has stored; from then on we may overwrite it
 
     @property
     def presets(self) -> Mapping[str, Config]:
@@ -83,7 +85,7 @@ class Workspace:
         self._news_at = 0.0
 
     def prefer_dark(self, dark: bool) -> None:
-        """Say how the browser is set: the look of the page until the user chooses another."""
+        """Take the look that the browser is set to, until the user chooses one."""
         self._prefers_dark = dark
         if self._restored:
             self._look()
@@ -94,7 +96,7 @@ class Workspace:
             self._window.set_dark(dark)
 
     def tick(self, now: float) -> None:
-        """Do what waits for a moment of rest; `now`, s."""
+        """Do what waits until the user rests; `now`, s. To be called several times a second."""
         if self._good is not None and len(self._good.trajectory.t):
             seen = self._window.runs_in_front and now - self._compared_at >= COMPARE_EVERY
             rests = not self._rested and now - self._good_at >= REST and self._settled(self._good.request)
@@ -106,11 +108,11 @@ class Workspace:
 
     @property
     def missing_run(self) -> Config | None:
-        """The configuration of a baseline whose run is to be made again, for `made_again`; None: there is no such."""
+        """The configuration of the baseline, if its run has to be made again (see `made_again`); else None."""
         return None if self._baseline is None or self._baseline.run is not None else self._baseline.config
 
     def news(self, now: float) -> str | None:
-        """What the browser is to store, once when it is new and has rested; None: nothing. `now`, s."""
+        """The text that the browser is to store, given once, when the user has rested; None: nothing new. `now`, s."""
         if not self._restored or self._news_at is None or now - self._news_at < REST:
             return None
         self._news_at = None
@@ -135,7 +137,7 @@ class Workspace:
     # ── Steps ──
 
     def go(self, steps: int) -> None:
-        """Undo so many steps when negative, or redo them."""
+        """Redo so many steps, or undo them when negative."""
         under_way = not same(self._runner.latest, self._changes.present)
         request = self._changes.go(steps + 1 if under_way and steps < 0 else steps)
         if request is None and under_way and steps < 0:
@@ -179,10 +181,10 @@ class Workspace:
             self._set_baseline(self._runs[number])
 
     def delete(self, number: int) -> None:
-        """Keep a run no more; as the baseline it stays."""
+        """Keep a run no more. If it is the baseline, it stays the baseline."""
         self._runs.delete(number)
         if self._kept is not None and self._kept.number == number:
-            self._kept, self._rested = None, True  # not to be kept again at once
+            self._kept, self._rested = None, True  # so that it is not kept again at once
         self._note_news()
 
     def rename(self, name: str) -> None:
@@ -200,7 +202,7 @@ class Workspace:
         self._window.say("Baseline pinned", f"{name}. What is shown is compared with it.")
 
     def made_again(self, config: Config, run: Trajectory | None) -> None:
-        """The run of a configuration that was kept, or None where there can be none."""
+        """Take the run of `missing_run`; None: it could not be made."""
         if run is not None and len(run.t):
             self._complete(run)
         elif self._baseline is not None and self._baseline.config == config:
@@ -208,7 +210,7 @@ class Workspace:
             self.clear_baseline()
 
     def _complete(self, run: Trajectory) -> None:
-        """Put a run where only its configuration was left."""
+        """Give the run to the kept run, and to the baseline, of which only the configuration was left."""
         self._runs.complete(run)
         baseline = self._baseline
         if baseline is not None and baseline.run is None and baseline.config == run.config:
@@ -232,7 +234,7 @@ class Workspace:
 
     @property
     def _name(self) -> str:
-        """Of the run that is shown."""
+        """The name of the run that is shown."""
         if self._kept is not None:
             return self._kept.name
         return "" if self._good is None else run_name(self._good.request.base, self._good.trajectory.config)
@@ -241,7 +243,7 @@ class Workspace:
         self._window.runs.show(self._runs, self._name, self._kept, self._baseline, self._before_drive)
 
     def _tell(self, now: float) -> None:
-        """Say of the run that is shown what has not been said yet."""
+        """Show name and figures of the run, unless they are shown already."""
         assert self._good is not None
         if not self._named:
             self._named = True
@@ -254,12 +256,12 @@ class Workspace:
     # ── Configurations ──
 
     def use_configuration(self, config: Config) -> None:
-        """Request a configuration from outside: for changes to the present preset if it has that one's name."""
+        """Request a configuration from outside; as changes to the present preset if both have the same name."""
         base = self._runner.latest.base
         self._request(first_request(base, config) if config.name == base.name else Request(config))
 
     def change_road(self, changes_of: Callable[[Config], dict[str, Any]]) -> None:
-        """Request changes to the road of the latest request (dotted key -> value), if that is a possible one."""
+        """Request changes (dotted key -> value) to the road of the latest request, if that request is valid."""
 
         def changed(request: Request) -> Request:
             try:
@@ -294,7 +296,7 @@ class Workspace:
         self._window.say("Preset saved", f"{name} is among the presets of this browser.")
 
     def _offer(self, base: Config) -> None:
-        """Show this preset as the chosen one, also when it is new."""
+        """Show this preset as the chosen one; add it if it is new."""
         name = next((name for name, config in self._presets.items() if config == base), "")
         if not name:
             name = next(f"own {k}" for k in range(1, PRESETS + 2) if f"own {k}" not in self._presets)
@@ -305,13 +307,13 @@ class Workspace:
         self._window.show_presets(self._presets, name)
 
     def _request(self, request: Request) -> None:
-        """Request all of it: the controls follow."""
+        """Request this; the controls follow, since the user has touched none."""
         self._runner.change(lambda latest: Request(request.base, request.changes))
 
     # ── From one visit to the next ──
 
     def restore(self, state: State | None) -> None:
-        """Go on where this browser was at its last visit; None: it does not tell.
+        """Go on where this browser was at its last visit; None: the browser told nothing.
 
         Look, presets and runs are there again in any case; parameters and baseline unless the explorer was started with
         something else, or the user is at work already.

@@ -38,6 +38,11 @@ def test_a_slider_leads_to_a_new_run_in_the_plots(explore: Any, open_tab: Any) -
     assert all(np.isfinite(column).all() for chart in tab.charts() for column in chart["data"])
 
 
+def series_of_loads(tab: Tab) -> list[int]:
+    """How many series the charts of the loads have; others are made when there is time for them."""
+    return [len(chart["series"]) for chart in tab.charts() if "load" in chart["title"].lower()]
+
+
 def test_charts_are_kept_so_that_zoom_survives(explore: Any, open_tab: Any) -> None:
     tab: Tab = open_tab(explore())
     wait_for(lambda: tab.shows_run(1))
@@ -48,7 +53,7 @@ def test_charts_are_kept_so_that_zoom_survives(explore: Any, open_tab: Any) -> N
     assert before <= {uuid for uuid, widget in tab.widgets.items() if widget["type"] == "GuiUplotMessage"}
     tab.use("Road wheels", 4)  # other curves: other charts
     wait_for(lambda: tab.shows_run(3))
-    wait_for(lambda: [len(chart["series"]) for chart in tab.charts()[:3]] == [6, 5, 2], "charts for four wheels")
+    wait_for(lambda: [6, 5, 2] == series_of_loads(tab), "charts for four wheels")
 
 
 def test_during_a_drag_run_numbers_only_rise_and_the_last_value_stands(explore: Any, open_tab: Any) -> None:

@@ -5,7 +5,6 @@ The last tests go through a tab, over viser's own protocol.
 
 from __future__ import annotations
 
-import json
 import re
 from typing import Any
 
@@ -414,6 +413,11 @@ def text_of(markup: str) -> str:
     return " ".join(re.sub("<[^>]*>", " ", markup).split())
 
 
+def stored_speeds(storage: dict[str, str]) -> list[float]:
+    """Of the runs that the browser has stored, km/h."""
+    return [kept.config.drive.speed_kmh for kept in state_from(storage["trackride"]).runs]
+
+
 @pytest.fixture
 def _quick_rest(monkeypatch: pytest.MonkeyPatch) -> None:
     """A moment is a rest, so that no test waits for one."""
@@ -484,8 +488,8 @@ def test_runs_and_baseline_come_back_with_the_browser(explore: Any, open_tab: An
     tab.use(SPEED, 30)
     wait_for(lambda: len(rows(tab)) == 3)
     tab.use("Paper vehicle", "✕")
-    wait_for(lambda: len(json.loads(storage.get("trackride", '{"runs": []}'))["runs"]) == 2, "the browser's storage")
-    assert rows(tab) == ["Speed 15 → 30 km/h", "the <b>quick</b> one"]
+    wait_for(lambda: rows(tab) == ["Speed 15 → 30 km/h", "the <b>quick</b> one"])
+    wait_for(lambda: stored_speeds(storage) == [20, 30], "the browser's storage")
     tab.close()
     made.clear()
 
