@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Iterable
 from html import unescape
 
 import pytest
@@ -30,20 +29,12 @@ NOT_IN_MODEL = ("app", "viser", "threading", "asyncio", "trimesh", "matplotlib",
 NO_VISER = ("model", "app.format", "app.plots", "app.runs", "app.tabs", "app.reports", "app.view3d.meshes")
 NO_VISER += ("app.view3d.snapshot", "app.view3d.track_belt", "app.view3d.mode_animation", "app.panels.status_line")
 
-MENDED = "the texts in panels/controls.py go to format/, and panels get their actions by name"
-
-
-def known(names: Iterable[str], broken: set[str]) -> list:
-    """Parameters of a test, with those marked that break its rule until they are mended."""
-    mark = pytest.mark.xfail(strict=True, reason=MENDED)
-    return [pytest.param(name, marks=mark if name in broken else ()) for name in names]
-
 
 def modules_in(package: str) -> list[str]:
     return [module for module in MODULES if inside(module, package)]
 
 
-@pytest.mark.parametrize("room", known(sorted(arrows()), {"app.format", "app.runs", "app.files", "app.panels"}))
+@pytest.mark.parametrize("room", sorted(arrows()))
 def test_rooms_import_from_floors_below_their_own(room):
     package = room.split(".")[0]
     for imported in arrows()[room]:
@@ -65,7 +56,6 @@ def test_rooms_of_the_model_do_not_import_what_it_offers_to_others():
     assert not [module for module in modules_in("model") if "model" in IMPORTS[module]]
 
 
-@pytest.mark.xfail(strict=True, reason=MENDED)
 def test_no_modules_import_each_other():
     assert circles() == []
 
@@ -93,14 +83,13 @@ def test_libraries_keep_to_their_places(library):
     assert not {user for user in users if not any(inside(user, place) for place in places)}
 
 
-@pytest.mark.parametrize("package", known(NO_VISER, {"app.format", "app.runs", "app.tabs", "app.reports"}))
+@pytest.mark.parametrize("package", NO_VISER)
 def test_no_way_leads_to_viser(package):
     assert modules_in(package)
     for module in modules_in(package):
         assert not (way := chain(module, "viser")), " → ".join(way)
 
 
-@pytest.mark.xfail(strict=True, reason=MENDED)
 def test_viser_is_not_loaded():
     assert "viser" not in loaded_by([module for package in NO_VISER for module in modules_in(package)])
 
@@ -119,10 +108,12 @@ def loaded_by(modules: list[str]) -> set[str]:
 
 
 def test_the_cache_of_compiled_code_heeds_all_files_with_such_code():
+    """Compiled functions, and those that they compile in from modules that they import."""
     from model.compiled import _KERNELS
 
-    users = {module for module in modules_in("model") if "model.compiled" in IMPORTS[module]} | {"model.compiled"}
-    assert users <= {f"model.{name.removesuffix('.py').replace('/', '.')}" for name in _KERNELS}
+    users = [module for module in modules_in("model") if "model.compiled" in IMPORTS[module]]
+    with_code = {*users, *(name for user in users for name in IMPORTS[user] & MODULES.keys())}
+    assert with_code <= {f"model.{name.removesuffix('.py').replace('/', '.')}" for name in _KERNELS}
 
 
 def test_the_picture_of_the_rooms_is_current():
