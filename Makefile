@@ -22,7 +22,7 @@ run: setup
 # both need is compiled before: numba's cache on disk knows nothing of two that fill it at once.
 test: setup chromium
 	$(BIN)/python -c "from app.server import prepare; prepare()"
-	$(BIN)/python -m pytest --numprocesses 2 --dist loadgroup
+	$(BIN)/python -m pytest --numprocesses 2
 
 chromium:
 	@command -v chromium chromium-browser google-chrome >/dev/null || { $(AS_ROOT) apt-get update && $(AS_ROOT) apt-get install -y chromium; }
