@@ -1,1 +1,1 @@
-"""What users take home and bring along: pictures, films, replays, uploads."""
+"""Files that users download and upload: pictures, movies, replays, configurations, runs."""

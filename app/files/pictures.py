@@ -1,17 +1,13 @@
-"""What users take home: file names, and pictures as PNG."""
+"""Pictures of the 3-D view: PNG files, and the frames of movies."""
 
 from __future__ import annotations
 
 import io
-import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from typing import Any, Protocol
 
 import numpy as np
 from PIL import Image
-
-from app.panels.controls import shown_text
-from model.config.config import Config
 
 SIZES = {
     "1280 × 720": (1280, 720),
@@ -24,7 +20,6 @@ MOVIE_SIZE = (1280, 720)  # px
 MOVIE_RATE = 20.0  # frames a second
 MOVIE_LENGTH = 4.0  # s at most
 RENDER_TIMEOUT = 20.0  # s; a hidden tab never answers
-NAME_LIMIT = 120  # characters of a file's name before its suffix
 
 
 class View(Protocol):
@@ -109,22 +104,3 @@ def _render(camera: Camera, width: int, height: int, kind: str) -> np.ndarray:
         ) from error
     except RuntimeError as error:
         raise NoPictureError("The browser could not draw the picture. Try a smaller size.") from error
-
-
-def file_name(config: Config, title: str, changes: Mapping[str, Any], detail: str, suffix: str) -> str:
-    """A safe name: what was run, what was changed, what is in it: "paper-vehicle_speed-22-km-h_1280x720.png".
-
-    config: with the changes, for their units.
-    """
-    parts = [_plain(title) or "run"]
-    for key, value in changes.items():
-        parameter = config.parameter(key)
-        text = str(value) if value is None or parameter.kind == "choice" else shown_text(parameter, value)
-        parts.append(_plain(f"{parameter.label} {text} {parameter.shown_unit}"))
-    end = f"_{_plain(detail)}" if detail else ""
-    return "_".join(part for part in parts if part)[: NAME_LIMIT - len(end)].rstrip("-_.") + end + suffix
-
-
-def _plain(text: str) -> str:
-    """Small letters, digits, hyphens and decimal points; nothing that a file system could take amiss."""
-    return re.sub(r"(?<!\d)\.|\.(?!\d)|[^a-z0-9.]+", "-", text.lower()).strip("-")

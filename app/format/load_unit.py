@@ -12,7 +12,7 @@ from model.analysis.ride import LOAD_PEAK, Row, comparison
 from model.dynamics.vehicle import System
 from model.simulation.trajectory import Trajectory
 
-SMALL = 500.0  # N on a wheel at rest, on average: the loads of such a vehicle would be mostly noughts in kN
+SMALL = 500.0  # N on a wheel at rest, on average: in kN the loads of such a vehicle would be mostly zeros
 
 
 class LoadUnit(NamedTuple):

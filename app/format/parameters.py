@@ -1,9 +1,100 @@
-"""Parameters and their values as people read them, in plain text."""
+"""Parameters and their values as people read and type them, in plain text.
+
+A value is shown in the friendlier unit of the parameter table (`shown_unit`); a configuration and a file hold it in SI.
+"""
 
 from __future__ import annotations
 
-from app.panels.controls import choice_words, shown_text
-from model.config.parameters import Parameter, Value
+import math
+from typing import Any
+
+import numpy as np
+
+from model.config.config import Config
+from model.config.parameters import PARAMETER, Parameter, Value, number_text
+from model.config.profile_points import points
+from model.config.validation import Fault
+
+
+def shown_label(parameter: Parameter) -> str:
+    """Name and unit: "Road stiffness, kN/m", the unit in one piece."""
+    unit = parameter.shown_unit.replace(" ", "\u00a0")
+    return f"{parameter.label}, {unit}" if unit else parameter.label
+
+
+def hint(parameter: Parameter) -> str:
+    """What it is, what happens when it grows, and where it stands in the paper."""
+    parts = [_in_words(parameter)]
+    if parameter.growth:
+        parts.append(f"When it grows: {parameter.growth[0].lower()}{parameter.growth[1:]}")
+    if parameter.per_wheel:
+        parts.append("One value for all road wheels.")
+    facts = [f"Symbol {parameter.symbol}"] if parameter.symbol else []
+    facts += [f"unit {parameter.shown_unit}"] if parameter.shown_unit else []
+    facts += [f"from {parameter.source}"] if parameter.source.startswith(("Table", "section")) else []
+    return " ".join(parts) + (f" ({', '.join(facts)})" if facts else "")
+
+
+def _in_words(parameter: Parameter) -> str:
+    """The description as it reads beside a box: what is left out of a file is an empty box, choices are words."""
+    text = parameter.description.replace("Left out:", "Empty:").replace("left out:", "empty:")
+    for choice in parameter.choices:
+        text = text.replace(choice, choice_words(choice))
+    return text
+
+
+def allowed(parameter: Parameter) -> str:
+    """Range and unit as shown: "0.5 to 100 km/h"."""
+    if parameter.kind == "choice":
+        return "one of " + ", ".join(map(choice_words, parameter.choices))
+    if parameter.kind in ("points", "parts"):
+        return parameter.allowed
+    low, high = (number_text(shown_number(parameter, bound)) for bound in (parameter.low, parameter.high))
+    return f"{low} to {high} {parameter.shown_unit}".strip()
+
+
+def shown_number(parameter: Parameter, value: float) -> float:
+    """A file's value in the shown unit, free of rounding noise."""
+    return float(f"{value * parameter.shown_factor:.10g}")
+
+
+def file_number(parameter: Parameter, shown: float) -> float | int:
+    """A shown value in the file's unit, free of rounding noise; whole where the parameter is."""
+    value = float(f"{shown / parameter.shown_factor:.10g}")
+    return int(value) if parameter.kind == "integer" and value.is_integer() else value
+
+
+def shown_text(parameter: Parameter, value: Any) -> str:
+    """A value, a list of values or nothing as text in the shown unit; of a profile and of a sum, what they hold."""
+    if value is None:
+        return ""
+    if parameter.kind == "points":
+        x, y = points(value)
+        return f"{len(x)} points, {x[-1] - x[0]:.4g} m long, {np.ptp(y):.3g} m high"
+    if parameter.kind == "parts":
+        return " + ".join(choice_words(road.type) for road in value) or "none"
+    if isinstance(value, str):
+        return value
+    if isinstance(value, tuple):
+        return ", ".join(number_text(shown_number(parameter, number)) for number in value)
+    return number_text(shown_number(parameter, value))
+
+
+def file_value(parameter: Parameter, text: str) -> Any:
+    """What a typed text means; the text itself where it means nothing, for the configuration to refuse."""
+    if not text.strip():
+        return None
+    try:
+        numbers = tuple(float(part) for part in text.strip(" ,;[]()").replace(";", ",").split(","))
+    except ValueError:
+        return text
+    values = tuple(file_number(parameter, number) for number in numbers)
+    return values if parameter.kind == "list" or len(values) > 1 else values[0]
+
+
+def choice_words(choice: str) -> str:
+    """A choice as people write it: "half round"."""
+    return choice.replace("_", " ")
 
 
 def value_text(parameter: Parameter, value: Value) -> str:
@@ -15,3 +106,18 @@ def value_text(parameter: Parameter, value: Value) -> str:
     if parameter.kind == "choice":
         return choice_words(str(value))
     return f"{shown_text(parameter, value)} {parameter.shown_unit}".strip()
+
+
+def refusal(fault: Fault, given: Any, config: Config) -> str:
+    """A fault in the words of the panel, and in the units that the configuration gives it."""
+    if fault.path not in PARAMETER:
+        return f"{fault}."
+    parameter = config.parameter(fault.path)
+    if parameter.kind in ("points", "parts"):
+        return f"{parameter.label}: {fault.message}."
+    if not isinstance(given, int | float) or not math.isfinite(given):
+        return f"{parameter.label}: {fault.value} is not allowed. Give {allowed(parameter)}."
+    if parameter.low <= given <= parameter.high:
+        return f"{parameter.label}: {fault.message}."
+    what = f"{shown_text(parameter, given)} {parameter.shown_unit}".strip()
+    return f"{parameter.label}: {what} is not allowed. Give {allowed(parameter)}."

@@ -1,133 +1,24 @@
 """Sliders and boxes for single parameters, as the parameter table describes them.
 
-What a box shows is in the table's friendlier unit (`shown_unit`); what a wish holds is as in a file.
+A box shows a value in the table's friendlier unit (`shown_unit`); what the session is asked for is as in a file.
 """
 
 from __future__ import annotations
 
-import math
-from typing import Any, Protocol
+from typing import Any
 
-import numpy as np
 import viser
 
+from app.format.parameters import choice_words, file_number, file_value, hint, shown_label, shown_number, shown_text
+from app.panels.actions import Actions
 from app.panels.callbacks import by_user
-from model.config.config import Config
-from model.config.parameters import PARAMETER, Parameter, number_text
-from model.config.profile_points import points
-from model.config.validation import Fault
+from model.config.parameters import Parameter
 
 PRECISION = 4  # decimals that a box takes and shows
 FINEST_STEP = 10**-PRECISION  # parameters that need finer ones are typed as text: 1e-6
 ONE_EACH = " Here one for each road wheel, front first."
 IMAGINARY = "vehicle.imaginary_"
 IMAGINARY_SWITCH = "vehicle.imaginary_wheels.enabled"
-
-
-class Wishes(Protocol):
-    """What the panel asks of the session. Nothing of it blocks."""
-
-    def change(self, key: str, value: Any) -> None: ...
-
-    def load(self, preset: str) -> None: ...
-
-    def reset(self) -> None: ...
-
-    def undo(self) -> None: ...
-
-    def redo(self) -> None: ...
-
-    def upload_profile(self, name: str, content: bytes) -> None: ...
-
-    def add_to_road(self, road_type: str) -> None: ...
-
-    def take_from_road(self) -> None: ...
-
-    def fail(self, error: Exception) -> None: ...
-
-
-# What a box shows, and back
-
-
-def shown_label(parameter: Parameter) -> str:
-    """Name and unit: "Road stiffness, kN/m", the unit in one piece."""
-    unit = parameter.shown_unit.replace(" ", "\u00a0")
-    return f"{parameter.label}, {unit}" if unit else parameter.label
-
-
-def hint(parameter: Parameter) -> str:
-    """What it is, what happens when it grows, and where it stands in the paper."""
-    parts = [_in_words(parameter)]
-    if parameter.growth:
-        parts.append(f"When it grows: {parameter.growth[0].lower()}{parameter.growth[1:]}")
-    if parameter.per_wheel:
-        parts.append("One value for all road wheels.")
-    facts = [f"Symbol {parameter.symbol}"] if parameter.symbol else []
-    facts += [f"unit {parameter.shown_unit}"] if parameter.shown_unit else []
-    facts += [f"from {parameter.source}"] if parameter.source.startswith(("Table", "section")) else []
-    return " ".join(parts) + (f" ({', '.join(facts)})" if facts else "")
-
-
-def _in_words(parameter: Parameter) -> str:
-    """The description as it reads beside a box: what is left out of a file is an empty box, choices are words."""
-    text = parameter.description.replace("Left out:", "Empty:").replace("left out:", "empty:")
-    for choice in parameter.choices:
-        text = text.replace(choice, choice_words(choice))
-    return text
-
-
-def allowed(parameter: Parameter) -> str:
-    """Range and unit as shown: "0.5 to 100 km/h"."""
-    if parameter.kind == "choice":
-        return "one of " + ", ".join(map(choice_words, parameter.choices))
-    if parameter.kind in ("points", "parts"):
-        return parameter.allowed
-    low, high = (number_text(shown_number(parameter, bound)) for bound in (parameter.low, parameter.high))
-    return f"{low} to {high} {parameter.shown_unit}".strip()
-
-
-def shown_number(parameter: Parameter, value: float) -> float:
-    """A file's value in the shown unit, free of rounding noise."""
-    return float(f"{value * parameter.shown_factor:.10g}")
-
-
-def file_number(parameter: Parameter, shown: float) -> float | int:
-    """A shown value in the file's unit, free of rounding noise; whole where the parameter is."""
-    value = float(f"{shown / parameter.shown_factor:.10g}")
-    return int(value) if parameter.kind == "integer" and value.is_integer() else value
-
-
-def shown_text(parameter: Parameter, value: Any) -> str:
-    """A value, a list of values or nothing as text in the shown unit; of a profile and of a sum, what they hold."""
-    if value is None:
-        return ""
-    if parameter.kind == "points":
-        x, y = points(value)
-        return f"{len(x)} points, {x[-1] - x[0]:.4g} m long, {np.ptp(y):.3g} m high"
-    if parameter.kind == "parts":
-        return " + ".join(choice_words(road.type) for road in value) or "none"
-    if isinstance(value, str):
-        return value
-    if isinstance(value, tuple):
-        return ", ".join(number_text(shown_number(parameter, number)) for number in value)
-    return number_text(shown_number(parameter, value))
-
-
-def file_value(parameter: Parameter, text: str) -> Any:
-    """What a typed text means; the text itself where it means nothing, for the configuration to refuse."""
-    if not text.strip():
-        return None
-    try:
-        numbers = tuple(float(part) for part in text.strip(" ,;[]()").replace(";", ",").split(","))
-    except ValueError:
-        return text
-    values = tuple(file_number(parameter, number) for number in numbers)
-    return values if parameter.kind == "list" or len(values) > 1 else values[0]
-
-
-def choice_words(choice: str) -> str:
-    """A choice as people write it: "half round"."""
-    return choice.replace("_", " ")
 
 
 def _typed(parameter: Parameter) -> bool:
@@ -143,7 +34,7 @@ def _decimals(value: float) -> int:
 class Control:
     """Slider or box of one parameter. A parameter for each wheel has two: for one value, and for a list."""
 
-    def __init__(self, gui: viser.GuiApi, parameter: Parameter, value: Any, wishes: Wishes) -> None:
+    def __init__(self, gui: viser.GuiApi, parameter: Parameter, value: Any, actions: Actions) -> None:
         self.parameter = parameter
         label, help_text = shown_label(parameter), hint(parameter)
         self._list: Any = None
@@ -164,15 +55,15 @@ class Control:
                 step = shown_number(parameter, parameter.step)
                 self._one = gui.add_number(label, float(first), step=float(step), hint=help_text)
             self._one.precision = max(PRECISION, _decimals(first))
-        self._one.on_update(by_user(lambda event: wishes.change(parameter.key, self.value), wishes.fail))
+        self._one.on_update(by_user(lambda event: actions.change(parameter.key, self.value), actions.fail))
         if parameter.per_wheel:
             self._list = gui.add_text(label, "", hint=help_text + ONE_EACH)
-            self._list.on_update(by_user(lambda event: wishes.change(parameter.key, self.listed_value), wishes.fail))
+            self._list.on_update(by_user(lambda event: actions.change(parameter.key, self.listed_value), actions.fail))
             self.show(value)
 
     @property
     def value(self) -> Any:
-        """What the slider or box says, as in a file."""
+        """The value of the slider or box, as in a file."""
         shown = self._one.value
         if isinstance(shown, str) and self.parameter.kind == "choice":
             return next((choice for choice in self.parameter.choices if choice_words(choice) == shown), shown)
@@ -182,18 +73,18 @@ class Control:
 
     @property
     def listed_value(self) -> Any:
-        """What the box for a list says."""
+        """The values in the box for a list, as in a file."""
         return None if self._list is None else file_value(self.parameter, self._list.value)
 
-    def was_moved_to_end(self, wished: Any) -> bool:
-        """Whether the slider stands at its end because the page moved it there from the value wished for, beyond it."""
-        if not self.parameter.what_if or not isinstance(wished, int | float):
+    def was_moved_to_end(self, requested: Any) -> bool:
+        """Whether the page moved the slider to its end because the requested value lies beyond it."""
+        if not self.parameter.what_if or not isinstance(requested, int | float):
             return False
-        value, shown = self._one.value, shown_number(self.parameter, wished)
+        value, shown = self._one.value, shown_number(self.parameter, requested)
         return value == self._one.max < shown or value == self._one.min > shown
 
     def show(self, value: Any) -> None:
-        """Say this value, unless the control means it already."""
+        """Show this value, unless the control shows it already."""
         as_list = isinstance(value, tuple) and self._list is not None
         if self._list is not None:
             self._list.visible, self._one.visible = as_list, not as_list
@@ -221,13 +112,13 @@ class Control:
         return tuple(float(shown_number(self.parameter, bound)) for bound in (low, high, step))  # type: ignore[return-value]
 
     def widen(self, value: Any) -> None:
-        """Give the slider a range that has this value."""
+        """Widen the range of the slider so that this value is in it."""
         if self.parameter.what_if and not isinstance(value, tuple):
             shown = shown_number(self.parameter, value)
             self._one.min, self._one.max = min(self._one.min, shown), max(self._one.max, shown)
 
     def describe(self, parameter: Parameter) -> None:
-        """Say the same parameter in another unit."""
+        """Show the same parameter in another unit."""
         if parameter != self.parameter:
             self.parameter = parameter
             self._one.label, self._one.hint = shown_label(parameter), hint(parameter)
@@ -235,23 +126,8 @@ class Control:
                 self._list.label, self._list.hint = shown_label(parameter), hint(parameter) + ONE_EACH
 
     def enable(self, applies: bool) -> None:
-        """Let it be used, or show that it means nothing at present: a slider turns grey, a box of a road goes."""
+        """Let it be used, or show that it has no effect now: a slider turns grey, a box of a road disappears."""
         if self.parameter.roads and not self.parameter.what_if:
             self._one.visible = applies
         else:
             self._one.disabled = not applies
-
-
-def refusal(fault: Fault, given: Any, config: Config) -> str:
-    """A fault in the words of the panel, and in the units that the configuration gives it."""
-    if fault.path not in PARAMETER:
-        return f"{fault}."
-    parameter = config.parameter(fault.path)
-    if parameter.kind in ("points", "parts"):
-        return f"{parameter.label}: {fault.message}."
-    if not isinstance(given, int | float) or not math.isfinite(given):
-        return f"{parameter.label}: {fault.value} is not allowed. Give {allowed(parameter)}."
-    if parameter.low <= given <= parameter.high:
-        return f"{parameter.label}: {fault.message}."
-    what = f"{shown_text(parameter, given)} {parameter.shown_unit}".strip()
-    return f"{parameter.label}: {what} is not allowed. Give {allowed(parameter)}."

@@ -6,11 +6,11 @@ from typing import Any
 
 import viser
 
-NOTICE_TIME = 10.0  # s that a notification stays
+NOTIFICATION_TIME = 10.0  # s that a notification stays
 PROGRESS = "progress"
 
 
-class Notices:
+class Notifications:
     """What the user is told beside the panels."""
 
     def __init__(self, client: viser.ClientHandle) -> None:
@@ -27,7 +27,7 @@ class Notices:
             return
         self.forget(kind)
         self._shown[kind] = self._client.add_notification(
-            title, body, color=color, auto_close_seconds=None if stays else NOTICE_TIME
+            title, body, color=color, auto_close_seconds=None if stays else NOTIFICATION_TIME
         )
 
     def forget(self, kind: str) -> None:

@@ -1,4 +1,4 @@
-"""How the panels share the page, whose size viser does not tell: it is read off the 3-D view's size."""
+"""How the panels share the page. viser does not tell the size of the page: it follows from that of the 3-D view."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SCALES = (0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.25, 2.5, 3.0, 3.5, 4.0)  # scr
 
 
 @dataclass(frozen=True)
-class Layout:
+class PageLayout:
     """Sizes, px."""
 
     right: int  # width of the plots' panel
@@ -40,12 +40,12 @@ class Screen:
         self._scale: float | None = None  # screen pixels for each px, once it is known
         self._right = RIGHT
 
-    def first(self) -> Layout:
+    def first(self) -> PageLayout:
         """Sizes to begin with, as if a screen pixel were a px."""
         width, height = self._seen
         return _layout(width - LEFT - self._right - SEAMS, height, self._right)
 
-    def update(self, width: int, height: int) -> Layout | None:
+    def update(self, width: int, height: int) -> PageLayout | None:
         """New sizes when the view's size, in screen pixels, has changed with the page or the panels; else None."""
         before, self._seen = self._seen, (width, height)
         if self._seen == before or not width or not height:
@@ -60,22 +60,22 @@ class Screen:
         if abs(width * before[1] / (height * before[0]) - 1) < 0.005:
             self._scale *= height / before[1]  # viser draws coarser or finer now; the page is as it was
             return None
-        if height != before[1]:  # the page itself is another size: no seam was moved
+        if height != before[1]:  # the page itself has another size; the user moved no seam
             return self._shared(width, height)
         return _layout(width / self._scale, height / self._scale, self._right)
 
-    def _shared(self, width: int, height: int) -> Layout:
-        """Sizes with the plots as wide as suits the page; of the view now, screen pixels."""
+    def _shared(self, width: int, height: int) -> PageLayout:
+        """Sizes with the plots as wide as suits the page. width, height: of the view now, screen pixels."""
         assert self._scale is not None
         view, before = width / self._scale, self._right
-        wished = min(max(RIGHT, PLOTS_SHARE * (LEFT + view + before + SEAMS)), WIDEST)
-        self._right = int(max(min(wished, view + before - SHORT_PLAYER - MARGINS), NARROW))
+        wanted = min(max(RIGHT, PLOTS_SHARE * (LEFT + view + before + SEAMS)), WIDEST)
+        self._right = int(max(min(wanted, view + before - SHORT_PLAYER - MARGINS), NARROW))
         return _layout(view + before - self._right, height / self._scale, self._right)
 
 
-def _layout(view_width: float, page_height: float, right: int) -> Layout:
+def _layout(view_width: float, page_height: float, right: int) -> PageLayout:
     player = int(min(max(view_width - MARGINS, SHORT_PLAYER), PLAYER))
-    return Layout(right, max(int((view_width - player) / 2), 0), player, int(page_height))
+    return PageLayout(right, max(int((view_width - player) / 2), 0), player, int(page_height))
 
 
 def chart_height(page_height: int, plots: int) -> int:
@@ -84,5 +84,5 @@ def chart_height(page_height: int, plots: int) -> int:
 
 
 def spectrum_height(page_height: int) -> int:
-    """Height of the spectrum's chart, px: half a page, or all that its boxes and the table of modes leave of it."""
+    """Height of the chart of the spectrum, px: half a page, or more if its boxes and the table of modes leave more."""
     return max(chart_height(page_height, 2), chart_height(page_height - MODES, 1))

@@ -8,8 +8,9 @@ from typing import Any
 
 import viser
 
+from app.panels.actions import Actions
 from app.panels.callbacks import by_user
-from app.panels.controls import IMAGINARY, IMAGINARY_SWITCH, Control, Wishes
+from app.panels.controls import IMAGINARY, IMAGINARY_SWITCH, Control
 from app.panels.road_controls import PartsControl, ProfileControl
 from model.config.config import Config
 from model.config.parameters import GROUPS, NOTES, PARAMETERS, ROAD, Parameter
@@ -20,14 +21,14 @@ BOXED = tuple(p for p in PARAMETERS if not p.what_if and p.group != NOTES and p.
 KINDS: dict[str, Any] = {"points": ProfileControl, "parts": PartsControl}  # that have controls of their own
 
 
-class ControlPanel:
+class ParameterPanel:
     """All controls of one browser tab, in the present container of `gui`; those in folders once `fill` is called."""
 
     def __init__(
-        self, gui: viser.GuiApi, presets: Mapping[str, Config], preset: str, config: Config, wishes: Wishes
+        self, gui: viser.GuiApi, presets: Mapping[str, Config], preset: str, config: Config, actions: Actions
     ) -> None:
         """presets: name -> configuration; `preset` is shown as the chosen one, `config` in the controls."""
-        self._gui, self._wishes = gui, wishes
+        self._gui, self._actions = gui, actions
         self._titles = _unique_titles(presets)
         self._preset: Any = gui.add_dropdown(
             "Preset",
@@ -35,19 +36,19 @@ class ControlPanel:
             initial_value=self._titles[preset],
             hint="A vehicle on a road to start from; all parameters follow",
         )
-        self._preset.on_update(by_user(lambda event: wishes.load(self._named(event.target.value)), wishes.fail))
+        self._preset.on_update(by_user(lambda event: actions.load(self._named(event.target.value)), actions.fail))
         self.status = gui.add_html("")
         self._controls: dict[str, Control] = {}
         for parameter in PARAMETERS:
             if parameter.what_if:
-                self._controls[parameter.key] = Control(gui, parameter, _value(config, parameter), wishes)
+                self._controls[parameter.key] = Control(gui, parameter, _value(config, parameter), actions)
         steps = gui.add_button_group(
             "Parameters",
             ("Undo", "Redo", "Reset"),
             hint="Undo the last change (Ctrl+Z), redo it (Ctrl+Shift+Z), or all parameters as in the preset (R)",
         )
-        acts = {"Undo": wishes.undo, "Redo": wishes.redo, "Reset": wishes.reset}
-        steps.on_click(by_user(lambda event: acts[event.target.value](), wishes.fail))
+        acts = {"Undo": actions.undo, "Redo": actions.redo, "Reset": actions.reset}
+        steps.on_click(by_user(lambda event: acts[event.target.value](), actions.fail))
         self._shown = config
         self.middle = gui.add_folder(None)  # for other controls, between the sliders and the folders
         groups = {parameter.group for parameter in BOXED}
@@ -57,11 +58,11 @@ class ControlPanel:
         self.show(config)
 
     def fill(self) -> None:
-        """Fill the folders, which are closed at first. What stands already may have been moved since: it is left."""
+        """Fill the folders, which are closed at first. The sliders stay as they are: the user may have moved them."""
         for parameter in BOXED:
             make, value = KINDS.get(parameter.kind, Control), _value(self._shown, parameter)
             with self._folders[parameter.group]:
-                self._controls[parameter.key] = control = make(self._gui, parameter, value, self._wishes)
+                self._controls[parameter.key] = control = make(self._gui, parameter, value, self._actions)
             _say(control, self._shown)
 
     def offer(self, presets: Mapping[str, Config], chosen: str) -> None:
@@ -97,7 +98,7 @@ class ControlPanel:
 
 
 def _say(control: Control, config: Config, *, touched: bool = False) -> None:
-    """What the configuration says of a control's parameter; its value not where the user may still move it."""
+    """Let a control show what the configuration says; not its value where the user may still move it."""
     key = control.parameter.key
     applies = control.parameter.applies_to(config.road.type)
     control.describe(config.parameter(key))

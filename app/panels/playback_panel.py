@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any
 
 import viser
 
+from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.runs.drive import DriveState
 from app.runs.playback import NORMAL_SPEED, SPEEDS, STEP, Playback
@@ -18,32 +19,14 @@ ANEW, GO = "|◀ Restart", "▶ Drive on"
 RUN, DRIVE = "Run", "Drive"
 MARKS = {True: "●", False: "○"}  # before the mode that is on, and the other
 
-# As tall as the box of text that takes its place in a drive: the rows below stay where they are.
+# As tall as the box of text that replaces it in a drive, so that the rows below stay where they are.
 AS_TALL = '<style>[id="TIME"] { min-height: 1.62rem; }</style>'
 
 
-class Player(Protocol):
-    """What the panel asks of the session."""
-
-    def toggle(self) -> None: ...
-
-    def step(self, steps: int) -> None: ...
-
-    def scrub(self, time: float) -> None: ...
-
-    def set_speed(self, speed: float) -> None: ...
-
-    def set_driving(self, on: bool) -> None: ...
-
-    def restart_drive(self) -> None: ...
-
-    def fail(self, error: Exception) -> None: ...
-
-
 class PlaybackPanel:
-    """A floating panel that shows a Playback or a drive, and passes on what the user wants of it."""
+    """A floating panel that shows a Playback or a drive, and passes on what the user asks for."""
 
-    def __init__(self, gui: viser.GuiApi, player: Player) -> None:
+    def __init__(self, gui: viser.GuiApi, actions: Actions) -> None:
         self._panel = gui.add_panel()
         with self._panel.add_tab("Playback"):
             self._mode: Any = gui.add_button_group(
@@ -66,8 +49,8 @@ class PlaybackPanel:
             self._buttons: Any = gui.add_button_group(
                 "Playback",
                 _buttons(False, True),
-                hint="Space plays and pauses; ← and → step by 0.01 s, with Shift by 0.1 s. A drive that pauses can be "
-                "looked back on for its last seconds.",
+                hint="Space plays and pauses; ← and → step by 0.01 s, with Shift by 0.1 s. When a drive pauses, you "
+                "can look back on its last seconds.",
             )
             speed = gui.add_dropdown(
                 "Time scale",
@@ -77,16 +60,18 @@ class PlaybackPanel:
                 "machine can compute.",
             )
             gui.add_html(AS_TALL.replace("TIME", self._time._impl.uuid))
-        self._time.on_update(by_user(lambda event: player.scrub(event.target.value), player.fail))
-        speed.on_update(by_user(lambda event: player.set_speed(SPEEDS[event.target.value]), player.fail))
+        self._time.on_update(by_user(lambda event: actions.scrub(event.target.value), actions.fail))
+        speed.on_update(by_user(lambda event: actions.set_speed(SPEEDS[event.target.value]), actions.fail))
         acts = {
-            START: lambda: player.scrub(0.0),
-            BACK: lambda: player.step(-1),
-            ON: lambda: player.step(1),
-            ANEW: player.restart_drive,
-        } | dict.fromkeys((PLAY, PAUSE, GO), player.toggle)
-        self._buttons.on_click(by_user(lambda event: acts[event.target.value](), player.fail))
-        self._mode.on_click(by_user(lambda event: player.set_driving(event.target.value.endswith(DRIVE)), player.fail))
+            START: lambda: actions.scrub(0.0),
+            BACK: lambda: actions.step(-1),
+            ON: lambda: actions.step(1),
+            ANEW: actions.restart_drive,
+        } | dict.fromkeys((PLAY, PAUSE, GO), actions.toggle)
+        self._buttons.on_click(by_user(lambda event: acts[event.target.value](), actions.fail))
+        self._mode.on_click(
+            by_user(lambda event: actions.set_driving(event.target.value.endswith(DRIVE)), actions.fail)
+        )
 
     def place(self, x: int, width: int) -> None:
         """Float at the foot of the view, px from its left edge."""
@@ -94,12 +79,12 @@ class PlaybackPanel:
         self._panel.float(x=x, y=-GAP, width=width, height=height)
 
     def show(self, playback: Playback) -> None:
-        """Say what the playback of a run does."""
+        """Show the playback of a run."""
         self._show_mode(False, playback.playing)
         self._show_time(playback)
 
     def show_drive(self, playback: Playback, state: DriveState | None) -> None:
-        """Say how far the drive has come, or where in its past the user is."""
+        """Show how far the drive has come, or where in its past the user is."""
         self._show_mode(True, playback.playing)
         self._driven.value = "starting…" if state is None else driven_text(state, playback)
         if state is not None and state.stands:

@@ -1,6 +1,6 @@
-"""The plots of one browser tab and what is read beside them: tabs in a docked panel.
+"""The plots of one browser tab, and the tabs beside them, in a docked panel.
 
-The curves of a tab in front follow every run. Comfort, Spectrum, Load map and Trust cost more than a drag may take:
+The curves of a tab in front follow every run. Comfort, Spectrum, Load map and Trust take too long for a drag:
 they follow, one at a time, when no newer run has come for CALM; so do the curves of tabs behind, and all of it at once
 when its tab comes to the front. While a drive goes on, what is in front follows it once a second, and says which
 stretch of it it shows.
@@ -16,10 +16,11 @@ from typing import Any
 import viser
 
 from app.format.colours import Palette, wheel_palette
+from app.panels.actions import Actions
 from app.panels.charts import Charts
 from app.panels.page_layout import chart_height, spectrum_height
 from app.panels.plot_page import now_html, plot_page, tab_html
-from app.panels.spectrum_panel import BELOW_CHART, Analyst, SpectrumPanel
+from app.panels.spectrum_panel import BELOW_CHART, SpectrumPanel
 from app.plots.curves import Plot, load_plots
 from app.plots.ride import ride_plots
 from app.tabs.about import about_html
@@ -51,7 +52,7 @@ class Part:
 class PlotPanel:
     """Tabs in a panel of a client's interface. `runs_tab` is left empty, for others to fill."""
 
-    def __init__(self, client: viser.ClientHandle, panel: Any, page_height: int, dark: bool, analyst: Analyst) -> None:
+    def __init__(self, client: viser.ClientHandle, panel: Any, page_height: int, dark: bool, actions: Actions) -> None:
         self._client, self._page_height, self._dark = client, page_height, dark
         self._run: Trajectory | None = None
         self._baseline: Trajectory | None = None
@@ -76,7 +77,7 @@ class PlotPanel:
             self._headline = gui.add_html("")
             self._comfort = gui.add_html("", order=float("inf"))
         self._loads, self._ride = Charts(gui, tabs[LOADS]), Charts(gui, tabs[RIDE])
-        self.spectrum = SpectrumPanel(gui, tabs[SPECTRUM], analyst)
+        self.spectrum = SpectrumPanel(gui, tabs[SPECTRUM], actions)
         with tabs[LOAD_MAP]:
             self._map = gui.add_html("")
         with tabs[TRUST]:
@@ -117,7 +118,7 @@ class PlotPanel:
         self.point_at(time)
 
     def settle(self) -> None:
-        """Bring one more part up to date when it is time for that. To be called ten times a second."""
+        """Bring one part up to date, if it is time for that. To be called ten times a second."""
         now = monotonic()
         calm = now - self._shown_at > CALM
         for part in sorted(self._behind(), key=self._is_behind):
@@ -140,7 +141,7 @@ class PlotPanel:
             self._now.content = now_html(time)
 
     def single_out(self, wheel: int | None) -> None:
-        """Let a wheel, in the model's order, stand alone among faded ones; None: all of them as they are."""
+        """Fade all curves but those of one wheel, in the model's order; None: fade none."""
         if wheel != self._wheel:
             self._wheel = wheel
             self._redraw()
@@ -162,21 +163,21 @@ class PlotPanel:
         self.redraw_spectrum()
 
     def _behind(self) -> list[Part]:
-        """Parts that do not show what is to be shown."""
+        """Parts that do not show the newest yet."""
         return [part for part in self._parts if part.version != self._version and self._run is not None]
 
     def _is_behind(self, part: Part) -> bool:
         return part.tab not in self.in_front
 
     def _follow(self) -> None:
-        """Show what follows every run."""
+        """Update the parts that follow every run."""
         self._version += 1
         for part in self._behind():
             if part.quick and part.tab in self.in_front:
                 self._update(part)
 
     def _redraw(self) -> None:
-        """Show the same curves in another way, and leave what costs more as it is."""
+        """Draw the same curves in another way, and leave what takes longer as it is."""
         slow = [part for part in self._parts if not part.quick and part.version == self._version]
         self._follow()
         for part in slow:

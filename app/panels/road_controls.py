@@ -1,6 +1,6 @@
-"""Controls of the roads that are no number: a measured profile, and the parts of a sum.
+"""Controls of what is no number in a road: a measured profile, and the parts of a sum.
 
-They can be used as app.panels.controls.Control is.
+They are used like app.panels.controls.Control.
 """
 
 from __future__ import annotations
@@ -10,8 +10,9 @@ from typing import Any
 
 import viser
 
+from app.format.parameters import choice_words, hint, shown_text
+from app.panels.actions import Actions
 from app.panels.callbacks import by_user
-from app.panels.controls import Wishes, choice_words, hint, shown_text
 from app.panels.road_parts import ADDED, parts_from, parts_text
 from model.config.parameters import Parameter
 
@@ -19,14 +20,14 @@ EXTENT = "trackride-extent"
 
 
 class RoadControl:
-    """What both have in common: nothing that slides."""
+    """What both have in common: there is no slider."""
 
     listed_value = None
 
     def __init__(self, parameter: Parameter, value: Any) -> None:
         self.parameter, self.value = parameter, value
 
-    def was_moved_to_end(self, wished: Any) -> bool:
+    def was_moved_to_end(self, requested: Any) -> bool:
         return False
 
     def widen(self, value: Any) -> None:
@@ -37,9 +38,9 @@ class RoadControl:
 
 
 class ProfileControl(RoadControl):
-    """A button that takes a CSV file, and what there is of points."""
+    """A button that takes a CSV file, and the extent of the present profile."""
 
-    def __init__(self, gui: viser.GuiApi, parameter: Parameter, value: Any, wishes: Wishes) -> None:
+    def __init__(self, gui: viser.GuiApi, parameter: Parameter, value: Any, actions: Actions) -> None:
         super().__init__(parameter, value)
         self._upload = gui.add_upload_button(
             "Open a profile",
@@ -49,7 +50,7 @@ class ProfileControl(RoadControl):
         )
         self._extent = gui.add_html("")
         file = self._upload
-        file.on_upload(by_user(lambda event: wishes.upload_profile(file.value.name, file.value.content), wishes.fail))
+        file.on_upload(by_user(lambda event: actions.upload_profile(file.value.name, file.value.content), actions.fail))
 
     def show(self, value: Any) -> None:
         self.value = value
@@ -58,14 +59,14 @@ class ProfileControl(RoadControl):
             self._extent.content = extent
 
     def enable(self, applies: bool) -> None:
-        """The extent comes and goes with the road; a profile can be opened on any."""
+        """Only a profile has an extent; but a profile can be opened on any road."""
         self._extent.visible = applies
 
 
 class PartsControl(RoadControl):
-    """The list of parts as text, and buttons that add to any road or take from it."""
+    """The list of parts as text, and buttons that add a part to any road or take one away."""
 
-    def __init__(self, gui: viser.GuiApi, parameter: Parameter, value: Any, wishes: Wishes) -> None:
+    def __init__(self, gui: viser.GuiApi, parameter: Parameter, value: Any, actions: Actions) -> None:
         super().__init__(parameter, value)
         self._text: Any = gui.add_text(
             parameter.label,
@@ -73,7 +74,7 @@ class PartsControl(RoadControl):
             multiline=True,
             hint=f"{hint(parameter)} Here a line for each: change its numbers, or delete it.",
         )
-        self._text.on_update(by_user(lambda event: wishes.change(parameter.key, self._meant()), wishes.fail))
+        self._text.on_update(by_user(lambda event: actions.change(parameter.key, self._meant()), actions.fail))
         types = {choice_words(road_type).capitalize(): road_type for road_type in ADDED}
         adding = gui.add_button_group(
             "Add",
@@ -81,8 +82,8 @@ class PartsControl(RoadControl):
             hint="Put an obstacle on this road, behind those that are there, or make it rougher",
         )
         self._taking = gui.add_button("Take the last one away", hint="The last of the parts above")
-        adding.on_click(by_user(lambda event: wishes.add_to_road(types[event.target.value]), wishes.fail))
-        self._taking.on_click(by_user(lambda event: wishes.take_from_road(), wishes.fail))
+        adding.on_click(by_user(lambda event: actions.add_to_road(types[event.target.value]), actions.fail))
+        self._taking.on_click(by_user(lambda event: actions.take_from_road(), actions.fail))
 
     def _meant(self) -> Any:
         return parts_from(self._text.value, self.value)

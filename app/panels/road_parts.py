@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from app.panels.controls import choice_words, shown_number
+from app.format.parameters import choice_words, shown_number
 from model.config.config import Config, FlatRoad, ProfileRoad, SimpleRoad, SumRoad, part_values
 from model.config.parameters import PARAMETER, number_text
 
-ADDED = ("half_round", "trapezoid", "step", "random")  # that can be added at a press
+ADDED = ("half_round", "trapezoid", "step", "random")  # that a button can add
 AHEAD, APART = 3.0, 6.0  # m from the first wheel to the first obstacle, and from one to the next
 LENGTHS = {"half_round": "radius", "trapezoid": "base"}  # of obstacles
 
@@ -64,7 +64,7 @@ def _shown(name: str, value: Any) -> str:
 
 
 def parts_from(text: str, present: Sequence[SimpleRoad]) -> tuple[Any, ...]:
-    """The parts that a text, with units or without, means, for the configuration to check.
+    """The parts that a text names, with units or without. They are not checked: the configuration does that.
 
     A profile is the one of the present parts.
     """
@@ -86,7 +86,7 @@ def _part(line: str, profiles: Any) -> Any:
 
 
 def _without_unit(words: list[str]) -> list[str]:
-    """Name and value, also where the unit of the panel stands behind them."""
+    """Name and value, without the unit of the panel if it follows them."""
     parameter = PARAMETER.get(f"road.{'_'.join(words[:-2])}")
     return words[:-1] if parameter is not None and words[-1] == parameter.shown_unit else words
 

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any
 
 import viser
 
 from app.format.load_unit import comparison_rows
+from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.runs.history import Kept
 from app.tabs.comparison import comparison_table
 from model.simulation.trajectory import Trajectory
-
-if TYPE_CHECKING:
-    from app.session.workspace import Desk
 
 PIN, SWAP, CLEAR = "Pin", "Swap", "Clear"
 SHOW, COMPARE, DELETE = "Show", "Compare", "✕"
@@ -24,24 +22,18 @@ STYLE = (Path(__file__).parents[2] / "assets" / "runs.css").read_text()
 HOW_TO = "No baseline. Pin a run (B) and change something: its curves stay, pale, and its figures stand here too."
 
 
-class Keeping(Protocol):
-    """What the panel asks of the session."""
-
-    def ask(self, kind: str, act: Callable[[Desk], None]) -> None: ...
-
-    def fail(self, error: Exception) -> None: ...
-
-
 class RunsPanel:
     """Fills a container (a tab) of `gui`."""
 
-    def __init__(self, gui: viser.GuiApi, container: Any, keeping: Keeping) -> None:
-        self._gui, self._keeping = gui, keeping
+    def __init__(self, gui: viser.GuiApi, container: Any, actions: Actions) -> None:
+        self._gui, self._actions = gui, actions
         self._rows: dict[int, viser.GuiButtonGroupHandle] = {}
         with container:
             self._style = gui.add_html("")
             self._heading = gui.add_html("")
-            self._name: Any = gui.add_text("Name", "", hint="Of the run that is shown: give it one and it is kept")
+            self._name: Any = gui.add_text(
+                "Name", "", hint="The name of the run that is shown; a run that you name is kept"
+            )
             baseline = gui.add_button_group(
                 "Baseline",
                 (PIN, SWAP, CLEAR),
@@ -50,13 +42,9 @@ class RunsPanel:
             )
             self._figures = gui.add_html("")
             self._folder = gui.add_folder("Kept runs")
-        self._name.on_update(by_user(lambda event: self._rename(event.target.value), keeping.fail))
-        acts: dict[str, Callable[[Desk], None]] = {
-            PIN: lambda desk: desk.pin(),
-            SWAP: lambda desk: desk.swap(),
-            CLEAR: lambda desk: desk.clear(),
-        }
-        baseline.on_click(by_user(lambda event: keeping.ask("baseline", acts[event.target.value]), keeping.fail))
+        self._name.on_update(by_user(lambda event: actions.rename(event.target.value), actions.fail))
+        acts = {PIN: actions.pin, SWAP: actions.swap, CLEAR: actions.clear_baseline}
+        baseline.on_click(by_user(lambda event: acts[event.target.value](), actions.fail))
 
     def compare(self, now: Trajectory, baseline: Trajectory | None) -> None:
         """Show the figures of a run of at least one sample, and those of the baseline."""
@@ -84,17 +72,10 @@ class RunsPanel:
         if self._name.value != name:
             self._name.value = name
 
-    def _rename(self, name: str) -> None:
-        self._keeping.ask("name", lambda desk: desk.rename(name))
-
     def _row(self, run: Kept) -> viser.GuiButtonGroupHandle:
-        """Name and buttons of a run, the newest on top."""
-        number = run.number
-        acts: dict[str, Callable[[Desk], None]] = {
-            SHOW: lambda desk: desk.recall(number),
-            COMPARE: lambda desk: desk.compare(number),
-            DELETE: lambda desk: desk.delete(number),
-        }
+        """A row with the name and the buttons of a run; the newest is on top."""
+        actions, number = self._actions, run.number
+        acts = {SHOW: actions.recall, COMPARE: actions.compare, DELETE: actions.delete}
         with self._folder:
             row = self._gui.add_button_group(
                 run.name,
@@ -102,12 +83,7 @@ class RunsPanel:
                 order=-number,
                 hint="Show: all parameters as in this run. Compare: make it the baseline. ✕: forget it.",
             )
-        row.on_click(
-            by_user(
-                lambda event: self._keeping.ask(f"run {number}", acts[event.target.value]),
-                self._keeping.fail,
-            )
-        )
+        row.on_click(by_user(lambda event: acts[event.target.value](number), actions.fail))
         return row
 
     def _marks(self, runs: Iterable[Kept], now: Kept | None) -> str:

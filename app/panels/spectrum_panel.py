@@ -1,12 +1,13 @@
-"""The tab "Spectrum": where the hull is shaken, and the vehicle's own modes, which can be shown in the 3-D view."""
+"""The tab "Spectrum": at which frequencies the hull moves, and the vehicle's modes, to be shown in the 3-D view."""
 
 from __future__ import annotations
 
 from contextlib import suppress
-from typing import Any, Protocol
+from typing import Any
 
 import viser
 
+from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.panels.charts import Charts
 from app.panels.plot_page import marks_html
@@ -20,23 +21,13 @@ from model.simulation.trajectory import Trajectory
 AMPLITUDE, DENSITY = "Amplitude, m/s²", "Power density, m²/s³"
 HULL, SEAT = "Centre of mass", "Driver's seat"
 NO_MODE = "– the run –"
-BELOW_CHART = 1e9  # order of what stands there: a chart made anew goes to the end of those without
-
-
-class Analyst(Protocol):
-    """What the panel asks of the session."""
-
-    def redraw_spectrum(self) -> None: ...
-
-    def show_mode(self) -> None: ...
-
-    def fail(self, error: Exception) -> None: ...
+BELOW_CHART = 1e9  # order of what stands there; a chart that is made anew would otherwise come after it
 
 
 class SpectrumPanel:
     """Fills a container (a tab) of `gui`."""
 
-    def __init__(self, gui: viser.GuiApi, container: Any, analyst: Analyst) -> None:
+    def __init__(self, gui: viser.GuiApi, container: Any, actions: Actions) -> None:
         self._modes: Modes | None = None
         with container:
             self._marks = gui.add_html("")
@@ -59,8 +50,8 @@ class SpectrumPanel:
             self._table = gui.add_html("", order=float("inf"))
         self._charts = Charts(gui, container)
         for box in (self._kind, self._place):
-            box.on_update(by_user(lambda event: analyst.redraw_spectrum(), analyst.fail))
-        self._choice.on_update(by_user(lambda event: analyst.show_mode(), analyst.fail))
+            box.on_update(by_user(lambda event: actions.redraw_spectrum(), actions.fail))
+        self._choice.on_update(by_user(lambda event: actions.show_mode(), actions.fail))
 
     def show(self, run: Trajectory, baseline: Trajectory | None, colour: str, height: int) -> None:
         """Show a run, beside its baseline, in a CSS colour and a chart of a height, px."""
@@ -84,13 +75,13 @@ class SpectrumPanel:
             self._choice.options = titles
 
     def offer_modes(self, on: bool) -> None:
-        """Whether a mode can be chosen: during a drive there is no run whose place it could take."""
+        """Let modes be chosen, or not: during a drive there is no run that a mode could replace."""
         if self._choice.disabled is on:
             self._choice.disabled = not on
 
     @property
     def chosen(self) -> Mode | None:
-        """The mode to be shown."""
+        """The mode that is chosen; None: the run."""
         titles = mode_titles(self._modes)
         value = self._choice.value
         return self._modes.swinging[titles.index(value)] if self._modes is not None and value in titles else None

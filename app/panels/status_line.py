@@ -7,13 +7,13 @@ import html
 from app.runs.drive import DriveState
 from model.simulation.trajectory import Trajectory
 
-BUSY_DELAY = 0.2  # s before a run is called under way: quick ones are not worth a flicker
+BUSY_DELAY = 0.2  # s before a run is said to be under way; for quick ones the line would only flicker
 SLOW_START = 1.5  # s without progress: the model is being compiled
 FIRST_START = "compiling the model, for half a minute…"
 
 
 def run_line(number: int, run: Trajectory) -> str:
-    """HTML: what a run took."""
+    """HTML: how long a run took."""
     took = run.statistics.seconds
     reached = float(run.t[-1]) if len(run.t) else 0.0
     speed = f"{reached / took:.0f}× real time" if took > 0 else ""

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 import viser
 
 from app.format.load_colours import RAMP
 from app.format.load_unit import LoadUnit
+from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.tabs.load_map import ticks
 from app.view3d.overlays import TRACTION_SCALE
@@ -63,22 +64,10 @@ LOOK = (
 ARROW_SCALE = 0.25, 4.0, 0.25  # least, most, step
 
 
-class Viewer(Protocol):
-    """What the panel asks of the session."""
-
-    def set_view(self, view: str) -> None: ...
-
-    def set_switch(self, attribute: str, on: bool | float) -> None: ...
-
-    def set_dark(self, dark: bool) -> None: ...
-
-    def fail(self, error: Exception) -> None: ...
-
-
 class ViewPanel:
     """Fills a folder of `gui`."""
 
-    def __init__(self, gui: viser.GuiApi, folder: viser.GuiFolderHandle, dark: bool, viewer: Viewer) -> None:
+    def __init__(self, gui: viser.GuiApi, folder: viser.GuiFolderHandle, dark: bool, actions: Actions) -> None:
         with folder:
             views = gui.add_button_group("Look from", tuple(VIEWS), hint=LOOK)
             self._switches: dict[str, Any] = {
@@ -94,11 +83,11 @@ class ViewPanel:
                 "Dark", dark, hint="Dark colours for page, plots and view; at first as the browser is set"
             )
             self._load_scale = gui.add_html("", visible=False)
-        views.on_click(by_user(lambda event: viewer.set_view(VIEWS[event.target.value]), viewer.fail))
+        views.on_click(by_user(lambda event: actions.set_view(VIEWS[event.target.value]), actions.fail))
         for attribute, box in self._switches.items():
-            box.on_update(by_user(_switching(viewer, attribute), viewer.fail))
-        scale.on_update(by_user(_switching(viewer, "arrow_scale"), viewer.fail))
-        self._night.on_update(by_user(lambda event: viewer.set_dark(event.target.value), viewer.fail))
+            box.on_update(by_user(_switching(actions, attribute), actions.fail))
+        scale.on_update(by_user(_switching(actions, "arrow_scale"), actions.fail))
+        self._night.on_update(by_user(lambda event: actions.set_dark(event.target.value), actions.fail))
 
     def show_dark(self, dark: bool) -> None:
         """Say which look the page has."""
@@ -131,5 +120,5 @@ def load_scale(top: float, unit: LoadUnit) -> str:
     )
 
 
-def _switching(viewer: Viewer, attribute: str) -> Callable[[Any], None]:
-    return lambda event: viewer.set_switch(attribute, event.target.value)
+def _switching(actions: Actions, attribute: str) -> Callable[[Any], None]:
+    return lambda event: actions.set_switch(attribute, event.target.value)

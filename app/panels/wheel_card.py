@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from html import escape
-from typing import Any, Protocol
+from typing import Any
 
 import viser
 
 from app.format.load_unit import LoadUnit
+from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from model.analysis.ride import WheelState
 
@@ -15,26 +16,18 @@ HEIGHT, GAP = 152, 14  # px; GAP from the view's upper edge
 ABSENT = "–"
 
 
-class Picker(Protocol):
-    """What the card asks of the session."""
-
-    def pick_wheel(self, wheel: int | None) -> None: ...
-
-    def fail(self, error: Exception) -> None: ...
-
-
 class WheelCard:
-    """A low panel along the view's upper edge, above the vehicle, there while a wheel is picked."""
+    """A low panel at the upper edge of the view, above the vehicle; it is there while a wheel is picked."""
 
-    def __init__(self, gui: viser.GuiApi, picker: Picker) -> None:
-        self._gui, self._picker = gui, picker
+    def __init__(self, gui: viser.GuiApi, actions: Actions) -> None:
+        self._gui, self._actions = gui, actions
         self._panel: viser.PanelHandle | None = None
         self._text: Any = None
         self._place = 0, 0
         self.wheel: int | None = None
 
     def pick(self, wheel: int | None) -> int | None:
-        """Turn to a wheel, in the model's order; None, or the one that is picked already: to none. The wheel then."""
+        """Pick a wheel, in the model's order; None, or the one that is picked already: none. Returns the picked one."""
         self.wheel = None if wheel == self.wheel else wheel
         if self.wheel is None and self._panel is not None:
             self._panel.remove()
@@ -44,7 +37,7 @@ class WheelCard:
             with self._panel.add_tab("Wheel"):
                 close = self._gui.add_button("Close", color="gray")
                 self._text = self._gui.add_html("")
-            close.on_click(by_user(lambda event: self._picker.pick_wheel(None), self._picker.fail))
+            close.on_click(by_user(lambda event: self._actions.pick_wheel(None), self._actions.fail))
             self.place(*self._place)
         return self.wheel
 

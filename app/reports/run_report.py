@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 from matplotlib.figure import Figure
 
-from app.files.pictures import file_name
+from app.format.differences import NONE, figure_text, row_texts
+from app.format.file_names import file_name
 from app.format.load_unit import comparison_rows, heading
 from app.format.markup import formula_html, words_html
 from app.format.parameters import value_text
@@ -19,7 +20,6 @@ from app.reports.drawings import LIGHT, WIDTH, Drawing, Look, plots_drawing
 from app.reports.html_page import Html, document, element, joined, picture, table
 from app.reports.side_view import draw_side_view
 from app.tabs.comfort import FIGURES, PLACES
-from app.tabs.comparison import NONE, figure_text, row_texts
 from app.tabs.modes import NOTE, moving
 from app.tabs.trust import balances, drift, work
 from model.analysis.comfort import ride_comfort

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from app.format.differences import change_text, row_texts
 from app.format.load_unit import heading
 from app.format.parameters import value_text
 from app.reports.sheet_page import BAND, GREY, MARKED, Page, plain
-from app.tabs.comparison import change_text, row_texts
 from model.analysis.ride import AIR_TIME, LOAD_PEAK, LOAD_RMS, TRAVEL, Row
 from model.config.config import Config
 from model.config.parameters import NOTES, PARAMETER, Parameter

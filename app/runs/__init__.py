@@ -1,1 +1,1 @@
-"""From the latest wish to a run, and the runs that are kept."""
+"""From the latest request to a run, and the runs that are kept."""

@@ -17,12 +17,12 @@ from model.simulation.integrate import Status
 from model.simulation.trajectory import Trajectory
 
 FRAME = 1 / 30  # s of real time from one frame to the next
-LONGEST_FRAME = 0.1  # s of real time that is made up for after a hitch; the rest is let go
-BUDGET = 0.7 * FRAME  # s of computing in a frame; a drive that needs more goes slower than asked for
+LONGEST_FRAME = 0.1  # s of real time that is caught up after a hitch; the rest is dropped
+BUDGET = 0.7 * FRAME  # s of computing in a frame; a drive that needs more goes slower than the user asked for
 FIRST = 1e-6  # s simulated at once, so that there is something to see
 SLICE = 0.05  # s simulated between two looks at the clock
 PLOTTED = 10.0  # s simulated that the plots show
-PLOT_EVERY = 0.1  # s of real time between two pasts for the plots
+PLOT_EVERY = 0.1  # s of real time between two updates of the plots
 ALIGNED = 40  # samples: the plotted past begins at a multiple of these, so that thinned curves do not flicker
 AT_HAND = 0.1  # s simulated that the 3-D view gets
 MEASURED = 1.0  # s of real time over which the real-time factor is measured
@@ -42,19 +42,19 @@ class Pace:
         return self.target
 
     def reached(self, now: float, time: float) -> None:
-        """At real time `now` the drive came as far as `time`: what is missing then is let go."""
+        """At real time `now` the drive has come to `time`. What is missing to the target is dropped."""
         self.target = min(self.target, time)
         self._marks.append((now, self.target))
         while len(self._marks) > 2 and self._marks[1][0] <= now - MEASURED:
             self._marks.popleft()
 
     def rest(self) -> None:
-        """Forget what was measured: a pause, or another speed, does not count."""
+        """Forget what was measured, because of a pause or another speed."""
         self._marks.clear()
 
     @property
     def factor(self) -> float | None:
-        """Simulated over real time lately; None when that cannot be said yet."""
+        """Simulated over real time in the last moments; None: it is too early to say."""
         if not self._marks:
             return None
         (began, first), (now, last) = self._marks[0], self._marks[-1]
@@ -75,7 +75,7 @@ class DriveState:
     past: Trajectory  # the last PLOTTED seconds, the same object until there is a newer one
     road: Road  # under `recent` and about it, in its frame
     origin: float  # m from where the drive started to x = 0 of that frame
-    stands: bool  # until it drives on, one can look back
+    stands: bool  # it is paused, and the user can look back
 
     @property
     def past_from_start(self) -> Trajectory:
@@ -90,7 +90,7 @@ class Driver:
         """clock: real time, s."""
         self._clock = clock
         self._drive = LiveDrive(config, PLOTTED + ALIGNED / config.simulation.output_rate)
-        self._wished = config
+        self._asked = config
         self._start()
 
     def _start(self) -> None:
@@ -104,10 +104,10 @@ class Driver:
 
     def change(self, config: Config) -> None:
         """Drive on with another configuration from the next frame on."""
-        self._wished = config
+        self._asked = config
 
     def stand(self) -> DriveState:
-        """Real time passes without driving from here on, until the next frame."""
+        """Pause: real time passes without driving until the next frame."""
         self._take_over()
         self._before = None
         self._pace.rest()
@@ -115,7 +115,7 @@ class Driver:
         return self._state(self._past, self._drive.road_under(self._past), stands=True)
 
     def frame(self, speed: float) -> DriveState:
-        """Drive on by the real time that has passed, times speed, or as far as BUDGET allows."""
+        """Drive on by the real time that has passed, times `speed`, or as far as BUDGET allows."""
         began = self._clock()
         self._take_over()
         drive, pace = self._drive, self._pace
@@ -156,13 +156,13 @@ class Driver:
         )
 
     def _take_over(self) -> None:
-        """Give the drive what is wished."""
-        if self._wished != self._drive.config and not self._drive.change(self._wished):
+        """Give the drive the configuration that was asked for."""
+        if self._asked != self._drive.config and not self._drive.change(self._asked):
             self._start()
 
 
 def aligned(run: Trajectory) -> Trajectory:
-    """The run from its first sample on whose number, counted from the start of the drive, is a multiple of ALIGNED."""
+    """The run without its first samples: it begins at a multiple of ALIGNED samples from the start of the drive."""
     if len(run.t) <= ALIGNED:
         return run
     number = round(float(run.t[0]) * run.config.simulation.output_rate)

@@ -1,4 +1,4 @@
-"""What came of the user's changes: steps to go back and forth through, and the runs that are kept. Pure."""
+"""What the user has done: steps to undo and redo, and the runs that are kept. Pure."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from app.panels.controls import choice_words, shown_text
-from app.runs.runner import Wish
+from app.format.parameters import choice_words, shown_text
+from app.runs.request import Request, changed_keys, same
 from model.config.config import Config
 from model.config.parameters import PARAMETER, Parameter
 from model.simulation.trajectory import Trajectory
@@ -17,7 +17,7 @@ from model.simulation.trajectory import Trajectory
 REST = 1.0  # s: changes of the same parameters that follow each other faster are one step
 STEPS = 200  # that can be undone
 RUNS = 20  # that are kept
-MEMORY = 200e6  # bytes of their trajectories, the newest run's aside
+MEMORY = 200e6  # bytes of their trajectories; the newest run does not count
 NAMED_CHANGES = 2  # in the name of a run; the others are counted
 NAME_LIMIT = 80  # characters of a name that the user gives
 RUN_COLOURS = (
@@ -27,35 +27,35 @@ RUN_COLOURS = (
 
 
 class Changes:
-    """Wishes to go back and forth through. All changes of a drag are one step."""
+    """The requests that undo and redo lead to. All changes of a drag are one step."""
 
-    def __init__(self, first: Wish) -> None:
+    def __init__(self, first: Request) -> None:
         self._steps = [first]
         self._at = 0
         self._noted = float("-inf")  # when, s
 
     @property
-    def present(self) -> Wish:
+    def present(self) -> Request:
         return self._steps[self._at]
 
-    def note(self, wish: Wish, now: float) -> None:
-        """A wish has come true at `now`, s; what had been undone before is forgotten."""
-        if same(wish, self.present):
+    def note(self, request: Request, now: float) -> None:
+        """The run of a request is shown at `now`, s; what had been undone before is forgotten."""
+        if same(request, self.present):
             return
-        moving = wish.touched and now - self._noted < REST
+        moving = request.touched and now - self._noted < REST
         self._noted = now
         del self._steps[self._at + 1 :]
         before = self._steps[max(self._at - 1, 0)]
         moved = changed_keys(before, self.present)
-        if moving and moved and changed_keys(before, wish) == moved:
-            self._steps[-1] = wish
+        if moving and moved and changed_keys(before, request) == moved:
+            self._steps[-1] = request
         else:
-            self._steps.append(wish)
+            self._steps.append(request)
         del self._steps[: -STEPS - 1]
         self._at = len(self._steps) - 1
 
-    def go(self, steps: int) -> Wish | None:
-        """The wish that many steps on, or back when negative, as far as there are any; None where there is none."""
+    def go(self, steps: int) -> Request | None:
+        """The request that many steps on, or back when negative, as far as there are any; None where there is none."""
         target = min(max(self._at + steps, 0), len(self._steps) - 1)
         if target == self._at:
             return None
@@ -68,8 +68,8 @@ class Kept:
     """A run that is kept."""
 
     number: int  # unique in its tab, rising
-    wish: Wish
-    config: Config  # wished for
+    request: Request
+    config: Config  # of the request
     run: Trajectory | None  # None: only its configuration is left, so that it can be made again
     name: str
     colour: str  # CSS
@@ -77,13 +77,13 @@ class Kept:
 
     @property
     def given_name(self) -> str:
-        """By the user; empty when it is called after its changes."""
+        """The name that the user gave; empty when the run is named after its changes."""
         return self.name if self.named else ""
 
 
 class Runs:
-    """The runs that are kept. Beyond RUNS of them the oldest without a name of the user's goes first; beyond MEMORY
-    the trajectories of the oldest go."""
+    """The runs that are kept. When there are more than RUNS, the oldest that the user has not named goes. When their
+    trajectories need more than MEMORY, those of the oldest go."""
 
     def __init__(self) -> None:
         self._kept: dict[int, Kept] = {}
@@ -106,33 +106,35 @@ class Runs:
         """The run of this configuration."""
         return next((kept for kept in self if kept.config == config), None)
 
-    def keep(self, wish: Wish, run: Trajectory, name: str = "") -> Kept:
-        """Keep a run, unless one of the same configuration is kept already; that one, or the new one."""
+    def keep(self, request: Request, run: Trajectory, name: str = "") -> Kept:
+        """Keep a run, unless one of the same configuration is kept already. Returns the one that is kept."""
         self.complete(run)
-        return self.find(run.config) or self._add(wish, run.config, run, name, self._free_colour())
+        return self.find(run.config) or self._add(request, run.config, run, name, self._free_colour())
 
     def take_back(self, kept: Kept) -> Kept:
-        """Keep what was kept at an earlier visit, unless the same configuration is kept already, as `keep` does."""
-        return self.find(kept.config) or self._add(kept.wish, kept.config, kept.run, kept.given_name, kept.colour)
+        """Keep again what was kept at an earlier visit; otherwise like `keep`."""
+        return self.find(kept.config) or self._add(kept.request, kept.config, kept.run, kept.given_name, kept.colour)
 
     def complete(self, run: Trajectory) -> None:
-        """Give a run, made again, to what is kept of it."""
+        """Give a trajectory, made again, to the kept run of its configuration."""
         found = next((kept for kept in self if kept.run is None and kept.config == run.config), None)
         if found is not None:
             self._kept[found.number] = replace(found, run=run)
             self._make_room(self._kept[found.number])
 
-    def _add(self, wish: Wish, config: Config, run: Trajectory | None, name: str, colour: str) -> Kept:
+    def _add(self, request: Request, config: Config, run: Trajectory | None, name: str, colour: str) -> Kept:
         self._last_number += 1
-        kept = Kept(self._last_number, wish, config, run, name or run_name(wish.base, config), colour, named=bool(name))
+        kept = Kept(
+            self._last_number, request, config, run, name or run_name(request.base, config), colour, named=bool(name)
+        )
         self._kept[kept.number] = kept
         self._make_room(kept)
         return kept
 
     def rename(self, number: int, name: str) -> Kept:
-        """Give a run a name; without one it is called after its changes again."""
+        """Give a run a name; with an empty name it is named after its changes again."""
         kept, name = self._kept[number], plain_name(name)
-        self._kept[number] = replace(kept, name=name or run_name(kept.wish.base, kept.config), named=bool(name))
+        self._kept[number] = replace(kept, name=name or run_name(kept.request.base, kept.config), named=bool(name))
         return self._kept[number]
 
     def delete(self, number: int) -> None:
@@ -149,7 +151,7 @@ class Runs:
                 self._kept[kept.number] = replace(kept, run=None)
 
     def _free_colour(self) -> str:
-        """The first colour that the fewest runs have."""
+        """The first of the colours that the fewest runs have."""
         used = [kept.colour for kept in self]
         return min(RUN_COLOURS, key=used.count)
 
@@ -161,33 +163,8 @@ def size(kept: Kept) -> int:
 
 
 def plain_name(name: str) -> str:
-    """A name of the user's, on one line and not too long."""
+    """A name from the user, on one line and not too long."""
     return " ".join(name.split())[:NAME_LIMIT]
-
-
-def same(one: Wish, other: Wish) -> bool:
-    """Whether two wishes are for the same base with the same changes."""
-    return one.base == other.base and dict(one.changes) == dict(other.changes)
-
-
-def changed_keys(one: Wish, other: Wish) -> frozenset[str] | None:
-    """Parameters in which two wishes differ; None when they start from different presets."""
-    if one.base != other.base:
-        return None
-    base, absent = one.base.values(), object()
-    return frozenset(
-        key
-        for key in {*one.changes, *other.changes}
-        if one.changes.get(key, base.get(key, absent)) != other.changes.get(key, base.get(key, absent))
-    )
-
-
-def first_wish(base: Config, config: Config) -> Wish:
-    """The wish for `config` as changes to `base`, so that a reset leads back to that."""
-    before, after = base.values(), config.values()
-    changes = {key: value for key, value in after.items() if before.get(key) != value}
-    wish = Wish(base, changes)
-    return wish if wish.config() == config else Wish(config)
 
 
 def run_name(base: Config, config: Config) -> str:
@@ -216,12 +193,12 @@ def differences(before: Config, after: Config) -> list[str]:
 
 
 def _named(parameter: Parameter, value: Any) -> str:
-    """A value that there was not before: another type of road brings it along."""
+    """A value that only the new type of road has."""
     return f"{parameter.label} {_words(parameter, value)} {parameter.shown_unit}".rstrip()
 
 
 def _difference(before: Parameter, old: Any, after: Parameter, new: Any) -> str:
-    """The unit once, unless the basis of the rates was changed and with it their unit."""
+    """Both values with the unit, once; twice where the unit has changed with the basis of the rates."""
     unit = f" {before.shown_unit}" if before.shown_unit != after.shown_unit and old is not None else ""
     return f"{after.label} {_words(before, old)}{unit} → {_words(after, new)} {after.shown_unit}".rstrip()
 

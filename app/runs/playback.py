@@ -45,7 +45,7 @@ class Playback:
         self.time = min(self.time, duration)
 
     def look_back(self, start: float, end: float) -> None:
-        """The past of a drive up to its present: stay there, or where the user has gone back to, if that is left."""
+        """Take the past of a drive: go to its end, or stay where the user went back to, if that is still in it."""
         at_present = self.playing or self.time >= self.end
         self.start, self.end = start, end
         self.time = end if at_present else min(max(self.time, start), end)

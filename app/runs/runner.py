@@ -1,126 +1,44 @@
-"""From the latest wish to a finished run, or to a drive that follows the wishes: one thread, a slot for the wish, a
-slot for each kind of outcome, no queue.
+"""From the latest request to a finished run, or to a drive that follows the requests.
 
-A newer wish replaces an older one that nobody has begun, and stops a run that has long to go. Outcomes come in the
-order of their wishes; one that nobody has taken is replaced by the next of its kind.
+One thread does it, with one slot for the request and one for each kind of outcome; there is no queue. A newer request
+replaces an older one that has not begun, and stops a run that has long to go. Outcomes come in the order of their
+requests; one that was not taken is replaced by the next of its kind.
 """
 
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import replace
 from time import monotonic
-from typing import Any, Protocol
 
-from app.runs.drive import FRAME, Driver, DriveState
-from model.config.config import Config
-from model.config.parameters import PARAMETERS
-from model.config.validation import EXCLUSIVE, ConfigError, Fault
+from app.runs.drive import FRAME, Driver
+from app.runs.request import Driven, Failed, Finished, Outcome, Refused, Request, Simulate
+from model.config.validation import ConfigError
 from model.dynamics.equilibrium import NoEquilibriumError
-from model.simulation.trajectory import Trajectory
 
-NEARLY_DONE = 0.5  # part of a run after which a newer wish lets it finish
-PATIENCE = 0.25  # s without a new curve after which a run is let finish, so that a long drag shows something…
+NEARLY_DONE = 0.5  # part of a run that is done; beyond it a newer request lets the run finish
+PATIENCE = 0.25  # s without a new curve after which a run may finish, so that a long drag shows something…
 LONGEST = 1.0  # s … unless it takes longer than this
 
 
-@dataclass(frozen=True)
-class Wish:
-    """What is to be run: a configuration, and what the user changed in it (dotted key -> value as in a file)."""
-
-    base: Config
-    changes: Mapping[str, Any] = field(default_factory=dict)
-    number: int = 0
-    touched: frozenset[str] = frozenset()  # what the user has just moved, and may still be moving
-
-    def changed(self, key: str, value: Any) -> Wish:
-        """The same with one more change; what contradicts it goes."""
-        rivals = {key} | _rivals(key)
-        if key == "road.type":
-            rivals |= {parameter.key for parameter in PARAMETERS if not parameter.applies_to(str(value))}
-        changes = {other: given for other, given in self.changes.items() if other not in rivals}
-        return replace(self, changes={**changes, key: value}, touched=self.touched | {key})
-
-    def config(self) -> Config:
-        """The configuration wished for. Raises ConfigError."""
-        return self.base.replace(dict(self.changes)) if self.changes else self.base
-
-
-def _rivals(key: str) -> set[str]:
-    """Keys that say the same as this one, so that only one of them can be given."""
-    found: set[str] = set()
-    for one, others in EXCLUSIVE:
-        if key == one:
-            found |= set(others)
-        elif key in others:
-            found.add(one)
-    return found
-
-
-@dataclass(frozen=True)
-class Finished:
-    wish: Wish
-    trajectory: Trajectory
-
-
-@dataclass(frozen=True)
-class Refused:
-    """The wish is no valid configuration."""
-
-    wish: Wish
-    faults: tuple[Fault, ...]
-
-
-@dataclass(frozen=True)
-class Failed:
-    """The run could not be made, for a reason that the message gives in plain words."""
-
-    wish: Wish
-    message: str
-
-
-@dataclass(frozen=True)
-class Driven:
-    """The drive has come so far."""
-
-    wish: Wish
-    state: DriveState
-
-    @property
-    def trajectory(self) -> Trajectory:
-        """Its last seconds."""
-        return self.state.past
-
-
-Outcome = Finished | Refused | Failed | Driven
-
-
-class Simulate(Protocol):
-    """model.simulate, or a stand-in."""
-
-    def __call__(
-        self, config: Config, *, on_progress: Callable[[float], None], should_stop: Callable[[], bool]
-    ) -> Trajectory: ...
-
-
 class Runner:
-    """Runs the latest wish, or drives on with it.
+    """Runs the latest request, or drives on with it.
 
     `on_outcome` is called, on the runner's thread, when an outcome can be taken.
     """
 
     def __init__(
         self,
-        first: Wish,
+        first: Request,
         simulate: Simulate,
         on_outcome: Callable[[], None],
         on_error: Callable[[Exception], None],
     ) -> None:
         self._simulate, self._on_outcome, self._on_error = simulate, on_outcome, on_error
         self._condition = threading.Condition()
-        self._wish = replace(first, number=1)
-        self._begun = 0  # number of the wish that was begun last
+        self._request = replace(first, number=1)
+        self._begun = 0  # number of the request that was begun last
         self._outcomes: dict[type, Outcome] = {}  # a refusal does not hide the run before it
         self._progress = 0.0  # of the run under way, 0…1
         self._began_at: float | None = None  # monotonic s; None: no run under way
@@ -132,18 +50,18 @@ class Runner:
         self._thread = threading.Thread(target=self._work, name="trackride-runner", daemon=True)
         self._thread.start()
 
-    def change(self, update: Callable[[Wish], Wish]) -> None:
-        """Wish for update(latest wish). It runs under the lock: quick and without side effects."""
+    def change(self, update: Callable[[Request], Request]) -> None:
+        """Make update(latest request) the latest one. It runs under the lock: quick and without side effects."""
         with self._condition:
-            self._wish = replace(update(self._wish), number=self._wish.number + 1)
+            self._request = replace(update(self._request), number=self._request.number + 1)
             self._condition.notify()
 
-    def withdraw(self, refused: Wish, instead: Wish) -> bool:
-        """Go back to an older wish, which is not run again, unless there is a newer one than the refused."""
+    def withdraw(self, refused: Request, instead: Request) -> bool:
+        """Go back to an older request, which is not run again. False, and nothing is done, if a newer one has come."""
         with self._condition:
-            if self._wish.number != refused.number:
+            if self._request.number != refused.number:
                 return False
-            self._wish = replace(instead, number=refused.number)
+            self._request = replace(instead, number=refused.number)
             return True
 
     def drive(self, speed: float | None, anew: bool = False) -> None:
@@ -153,20 +71,20 @@ class Runner:
         """
         with self._condition:
             if speed is None and self._speed is not None:
-                self._wish = replace(self._wish, number=self._wish.number + 1)  # is to be run
+                self._request = replace(self._request, number=self._request.number + 1)  # to be run
             self._anew |= anew or self._speed is None
             self._speed = speed
             self._condition.notify()
 
     @property
-    def latest(self) -> Wish:
-        return self._wish
+    def latest(self) -> Request:
+        return self._request
 
     def take(self) -> list[Outcome]:
-        """The newest outcome of each kind, once, in the order of their wishes."""
+        """The newest outcome of each kind, once, in the order of their requests."""
         with self._condition:
             outcomes, self._outcomes = self._outcomes, {}
-        return sorted(outcomes.values(), key=lambda outcome: outcome.wish.number)
+        return sorted(outcomes.values(), key=lambda outcome: outcome.request.number)
 
     def under_way(self) -> tuple[int, float, float] | None:
         """Number, part done (0…1) and seconds so far of the run under way, if there is one."""
@@ -184,17 +102,17 @@ class Runner:
         while True:
             with self._condition:
                 self._condition.wait_for(
-                    lambda: self._closed or self._speed is not None or self._wish.number > self._begun
+                    lambda: self._closed or self._speed is not None or self._request.number > self._begun
                 )
                 if self._closed:
                     return
-                driving, wish = self._speed is not None, self._wish
+                driving, request = self._speed is not None, self._request
                 if not driving:
-                    self._begun, self._progress, self._began_at = wish.number, 0.0, monotonic()
+                    self._begun, self._progress, self._began_at = request.number, 0.0, monotonic()
             if driving:
                 self._drive_on()
             else:
-                outcome = self._outcome_of(wish)
+                outcome = self._outcome_of(request)
                 self._began_at = None
                 if outcome is not None:
                     self._shown_at = monotonic()
@@ -205,19 +123,19 @@ class Runner:
             self._outcomes[type(outcome)] = outcome
         self._on_outcome()
 
-    def _outcome_of(self, wish: Wish) -> Outcome | None:
-        """None when the run was stopped for a newer wish, or at closing."""
+    def _outcome_of(self, request: Request) -> Outcome | None:
+        """None: the run was stopped, for a newer request or at closing."""
         try:
-            config = wish.config()
+            config = request.config()
             run = self._simulate(config, on_progress=self._note_progress, should_stop=self._should_stop)
         except ConfigError as error:
-            return Refused(wish, error.faults)
+            return Refused(request, error.faults)
         except NoEquilibriumError as error:
-            return Failed(wish, str(error))
+            return Failed(request, str(error))
         except Exception as error:
             self._on_error(error)
             return None
-        return None if run.status == "cancelled" else Finished(wish, run)
+        return None if run.status == "cancelled" else Finished(request, run)
 
     def _note_progress(self, part: float) -> None:
         self._progress = part
@@ -225,16 +143,16 @@ class Runner:
     def _should_stop(self) -> bool:
         if self._closed or self._speed is not None:
             return True
-        if self._wish.number == self._begun or self._progress >= NEARLY_DONE:
+        if self._request.number == self._begun or self._progress >= NEARLY_DONE:
             return False
         now = monotonic()
         overdue = now - self._shown_at > PATIENCE
         return not overdue or now - (self._began_at or now) > LONGEST
 
     def _drive_on(self) -> None:
-        """Frame by frame, until there is to be no drive any more."""
+        """Drive frame by frame, until the drive is to end."""
         driver: Driver | None = None
-        good = self._wish
+        good = self._request
         self._rolls = stands = False
         while True:
             with self._condition:
@@ -242,26 +160,26 @@ class Runner:
                     self._condition.wait_for(self._has_to_drive)
                 if self._closed or self._speed is None:
                     return
-                wish, speed = self._wish, self._speed
-                changed, anew = wish.number > self._begun, self._anew
+                request, speed = self._request, self._speed
+                changed, anew = request.number > self._begun, self._anew
                 goes = speed > 0.0 and (self._rolls or changed or anew)
-                self._begun, self._anew = wish.number, False
+                self._begun, self._anew = request.number, False
             began = monotonic()
             try:
                 if changed or anew or driver is None:
-                    config = wish.config()
+                    config = request.config()
                     if anew or driver is None:
                         driver = Driver(config)
                     driver.change(config)
-                    good = wish
+                    good = request
                 state = driver.frame(speed) if goes else driver.stand()
                 self._rolls, stands = not state.ended, state.stands
                 self._publish(Driven(good, state))
             except ConfigError as error:
-                self._publish(Refused(wish, error.faults))
+                self._publish(Refused(request, error.faults))
             except NoEquilibriumError as error:
                 driver, self._rolls = None, False
-                self._publish(Failed(wish, str(error)))
+                self._publish(Failed(request, str(error)))
             except Exception as error:
                 driver, self._rolls = None, False
                 self._on_error(error)
@@ -272,4 +190,4 @@ class Runner:
 
     def _has_to_drive(self) -> bool:
         rolls = self._rolls and self._speed != 0.0
-        return self._closed or self._speed is None or rolls or self._anew or self._wish.number > self._begun
+        return self._closed or self._speed is None or rolls or self._anew or self._request.number > self._begun

@@ -7,23 +7,30 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from app.runs.history import RUN_COLOURS, RUNS, Kept, first_wish, plain_name, run_name
-from app.runs.runner import Wish
+from app.runs.history import RUN_COLOURS, RUNS, Kept, plain_name, run_name
+from app.runs.request import Request, first_request
 from model.config.config import Config, ConfigError, part_values
 
 PRESETS = 30  # of the user's own, at most
 LONGEST = 1_000_000  # characters of a text that is looked at: more than all presets and runs take
-BAD = (ValueError, TypeError, KeyError, AttributeError, ConfigError)  # what comes of texts that others have written
+REQUEST = "wish"  # key of the request: browsers have stored it under this name
+BAD = (
+    ValueError,
+    TypeError,
+    KeyError,
+    AttributeError,
+    ConfigError,
+)  # errors of reading a text that anybody may have written
 
 T = TypeVar("T")
 
 
 @dataclass(frozen=True)
 class State:
-    """What a tab is to find again."""
+    """What a tab finds again at its next visit."""
 
-    start: Config | None  # what the explorer had been started with
-    wish: Wish | None  # what was shown
+    start: Config | None  # what the explorer was started with
+    request: Request | None  # what was shown
     presets: tuple[Config, ...]  # the user's own, oldest first
     runs: tuple[Kept, ...]  # without their trajectories, oldest first
     baseline: Kept | None
@@ -31,13 +38,18 @@ class State:
 
 
 def state_text(
-    start: Config, wish: Wish, presets: Iterable[Config], runs: Iterable[Kept], baseline: Kept | None, dark: bool | None
+    start: Config,
+    request: Request,
+    presets: Iterable[Config],
+    runs: Iterable[Kept],
+    baseline: Kept | None,
+    dark: bool | None,
 ) -> str:
-    """All of it as JSON; of runs only how to make them again."""
+    """All of it as JSON; of runs only what is needed to make them again."""
     return json.dumps(
         {
             "start": start.values(),
-            "wish": _wish_values(wish, wish.config()),
+            REQUEST: _request_values(request, request.config()),
             "presets": [preset.values() for preset in presets],
             "runs": [_run_values(kept) for kept in runs],
             "baseline": None if baseline is None else _run_values(baseline),
@@ -48,7 +60,7 @@ def state_text(
 
 
 def state_from(text: str) -> State:
-    """What can be used of a text, whoever has written it. Raises ValueError when it is no state at all."""
+    """All that is valid in a text, which anybody may have written. Raises ValueError when it is no state at all."""
     if len(text) > LONGEST:
         raise ValueError(f"it is longer than {LONGEST} characters")
     try:
@@ -59,7 +71,7 @@ def state_from(text: str) -> State:
         raise ValueError("it is no state of the explorer")
     return State(
         start=_usable(_config, state.get("start")),
-        wish=_usable(_wish, state.get("wish")),
+        request=_usable(_request, state.get(REQUEST)),
         presets=_all_usable(_config, state.get("presets"), PRESETS),
         runs=_all_usable(_run, state.get("runs"), RUNS),
         baseline=_usable(_run, state.get("baseline")),
@@ -67,29 +79,29 @@ def state_from(text: str) -> State:
     )
 
 
-def _wish_values(wish: Wish, config: Config) -> dict[str, Any]:
-    return {"base": wish.base.values(), "config": config.values()}
+def _request_values(request: Request, config: Config) -> dict[str, Any]:
+    return {"base": request.base.values(), "config": config.values()}
 
 
 def _run_values(kept: Kept) -> dict[str, Any]:
     about = {"name": kept.given_name, "colour": kept.colour}
-    return about | _wish_values(kept.wish, kept.config)
+    return about | _request_values(kept.request, kept.config)
 
 
 def _config(values: Any) -> Config:
     return Config().replace(values)
 
 
-def _wish(values: Any) -> Wish:
-    return first_wish(_config(values["base"]), _config(values["config"]))
+def _request(values: Any) -> Request:
+    return first_request(_config(values["base"]), _config(values["config"]))
 
 
 def _run(values: Any) -> Kept:
-    wish, name, colour = _wish(values), plain_name(str(values["name"])), values["colour"]
+    request, name, colour = _request(values), plain_name(str(values["name"])), values["colour"]
     if colour not in RUN_COLOURS:
         raise ValueError("no colour of a run")
-    config = wish.config()
-    return Kept(0, wish, config, None, name or run_name(wish.base, config), colour, named=bool(name))
+    config = request.config()
+    return Kept(0, request, config, None, name or run_name(request.base, config), colour, named=bool(name))
 
 
 def _usable(read: Callable[[Any], T], values: Any) -> T | None:

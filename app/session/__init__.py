@@ -1,1 +1,1 @@
-"""One browser tab: its threads, its window, and what its user keeps at hand."""
+"""One browser tab: its threads, its window, the workspace of its user, downloads and uploads."""

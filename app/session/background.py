@@ -1,4 +1,4 @@
-"""One job at a time beside the runs, on a short-lived thread of its own: pictures, files, what a browser remembers."""
+"""One job at a time beside the runs, on a thread that lives as long as the job: files to send, files that came in."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from collections.abc import Callable
 PATIENCE = 1.0  # s to wait at closing for a browser that still draws; viser ends that when the tab is gone
 
 
-class Errands:
-    """Its methods are for one thread; `stopped` may be asked on any."""
+class BackgroundJob:
+    """At most one job. Its methods are for one thread; `stopped` may be asked on any."""
 
     def __init__(self, on_error: Callable[[Exception], None]) -> None:
         """on_error: called, on the job's thread, with an exception that a job did not catch."""
@@ -26,7 +26,7 @@ class Errands:
         if self.busy:
             return False
         self._stop.clear()
-        self._thread = threading.Thread(target=self._do, args=(job,), name="trackride-errand", daemon=True)
+        self._thread = threading.Thread(target=self._do, args=(job,), name="trackride-job", daemon=True)
         self._thread.start()
         return True
 

@@ -1,8 +1,8 @@
 """One browser tab from connecting to disconnecting: its threads, and what passes between them.
 
-viser's event loop calls the methods that panels and keys know (change, scrub, set_view …): they leave a wish and
-return. The runner's thread (app/runs/runner.py) turns the latest wish into a run. The view's thread, VIEW_RATE times a
-second or as soon as there is a run, does all that is seen (app/session/window.py); it never draws under a lock.
+viser's event loop calls the methods that panels and keys know (change, scrub, set_view …): they leave a request and
+return. The runner's thread (app/runs/runner.py) turns the latest request into a run. The view's thread, VIEW_RATE times
+a second or as soon as there is a run, does all that is seen (app/session/window.py); it never draws under a lock.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from typing import Any
 import viser
 
 from app.panels.road_parts import with_part, without_last
-from app.runs.history import first_wish
 from app.runs.playback import Playback
-from app.runs.runner import Driven, Failed, Finished, Outcome, Refused, Runner, Simulate, Wish
-from app.session.transfers import Order, Porter
-from app.session.window import Scene, Window
-from app.session.workspace import Desk
+from app.runs.request import Driven, Failed, Finished, Outcome, Refused, Request, Simulate, first_request
+from app.runs.runner import Runner
+from app.session.transfers import Download, Transfers
+from app.session.window import VehicleView, Window
+from app.session.workspace import Workspace
 from app.view3d.view import Stage
 from model.config.config import Config
 from model.simulation.simulate import simulate
@@ -31,17 +31,17 @@ from model.simulation.trajectory import Trajectory
 
 VIEW_RATE = 30.0  # Hz: the 3-D view
 TEXT_RATE = 10.0  # Hz: numbers, time slider, time cursors …
-DRAG_TEXT_RATE = 3.0  # Hz: … while runs follow each other, whose curves the page has to draw meanwhile
-DRAG_PAUSE = 0.3  # s after which they do not any more
-REFUSAL_DELAY = 1.2  # s without another wish until a bad value is refused: time to finish typing
-SEEN_WITHIN = 2.0  # s in which what an errand wants is drawn, or else it goes on without
+DRAG_TEXT_RATE = 3.0  # Hz: … and while runs follow each other: the page has their curves to draw
+DRAG_PAUSE = 0.3  # s without a new run after which a drag is over
+REFUSAL_DELAY = 1.2  # s from a bad value to its refusal if no other request comes: time to finish typing
+SEEN_WITHIN = 2.0  # s that a background job waits for something to be drawn; then it goes on without
 SAME_ERROR = 5.0  # s before the same error is logged and shown again
 
 log = logging.getLogger("trackride")
 
 
 class Session:
-    """The methods may be called on any thread and return at once, but for close."""
+    """All methods may be called on any thread. All return at once, except `close` and those for background jobs."""
 
     def __init__(
         self,
@@ -51,57 +51,55 @@ class Session:
         config: Config,
         *,
         run: Simulate = simulate,
-        make_scene: Callable[[viser.ClientHandle, bool], Scene] = Stage,
+        make_view: Callable[[viser.ClientHandle, bool], VehicleView] = Stage,
     ) -> None:
         """presets: name -> configuration, among them `preset`; config: what to run first."""
         self._lock = threading.Lock()  # of the next six
         self._playback = Playback()
         self._driving = False  # on and on, instead of a run
         self._in_view = True  # the page is not in the background
-        self._intents: dict[str, Callable[[], None]] = {}  # what the view is to do: the newest of each kind
-        self._refused: Refused | None = None  # a bad wish that is not yet spoken of
+        self._posted: dict[str, Callable[[], None]] = {}  # what the view's thread is to do: the newest of each kind
+        self._refused: Refused | None = None  # a bad request that the user has not been told of yet
         self._refuse_at = 0.0  # monotonic s
-        self._shown_at = self._told_at = -DRAG_PAUSE  # monotonic s: when a run was shown last, and numbers and times
+        self._shown_at = self._told_at = -DRAG_PAUSE  # monotonic s: when a run was shown last; numbers
 
         self._good: Finished | Driven | None = None  # what is shown
         self._steps = 0  # to be redone, or undone when negative; under the lock
         self._last_error: tuple[str, float] = ("", 0.0)
         self._wake = threading.Event()
         self._closed = threading.Event()
-        self._runner = Runner(first_wish(presets[preset], config), run, self._wake.set, self.fail)
+        self._runner = Runner(first_request(presets[preset], config), run, self._wake.set, self.fail)
         try:
-            self._window = Window(client, presets, preset, config, self, make_scene)
+            self._window = Window(client, presets, preset, config, self, make_view)
         except Exception:
             self._runner.close()
             raise
-        self._porter = Porter(client, self, self._window, run, self._intend)
-        self._desk = Desk(self._window, self._runner, presets, self._porter)
-        self._porter.recollect()
+        self._workspace = Workspace(self._window, self._runner, presets)
+        self._transfers = Transfers(client, self, self._window, self._workspace, run)
+        self._transfers.recollect()
         self._thread = threading.Thread(target=self._show, name="trackride-view", daemon=True)
         self._thread.start()
 
-    # ── What the user wishes for ──
+    # ── What the user asks for: app/panels/actions.py says what each of these does ──
+    # A page can be quicker than __init__: window and workspace are looked up only when the view's thread acts.
 
     def change(self, key: str, value: Any) -> None:
-        """Wish for another value of a parameter (as in a file)."""
-        wished = self._runner.latest.changes.get(key)
-        if self._window.was_moved_to_end(key, wished):
+        requested = self._runner.latest.changes.get(key)
+        if self._window.was_moved_to_end(key, requested):
             with self._lock:
                 bad = self._refused is not None
                 self._refuse_at = 0.0  # typing has ended
             if not bad:
-                self._intend(key, lambda: self._window.show_value(key, wished))
+                self.post(key, lambda: self._window.show_value(key, requested))
         else:
-            self._runner.change(lambda wish: wish.changed(key, value))
+            self._runner.change(lambda request: request.changed(key, value))
 
     def load(self, preset: str) -> None:
-        """Wish for a preset."""
-        base = self._desk.presets[preset]
-        self._runner.change(lambda wish: Wish(base))
+        base = self._workspace.presets[preset]
+        self._runner.change(lambda request: Request(base))
 
     def reset(self) -> None:
-        """Wish for the preset without any change."""
-        self._runner.change(lambda wish: Wish(wish.base))
+        self._runner.change(lambda request: Request(request.base))
 
     def undo(self) -> None:
         with self._lock:
@@ -111,9 +109,37 @@ class Session:
         with self._lock:
             self._steps += 1
 
-    def ask(self, kind: str, act: Callable[[Desk], None]) -> None:
-        """Wish for something that the desk does; of each kind the newest counts."""
-        self._intend(kind, lambda: act(self._desk))
+    def use_configuration(self, read: Callable[[], Config | None]) -> None:
+        def use() -> None:
+            config = read()
+            if config is not None:
+                self._workspace.use_configuration(config)
+
+        self.post("configuration", use)
+
+    def save_preset(self, name: str) -> None:
+        self.post("preset", lambda: self._workspace.save_preset(name))
+
+    def pin(self) -> None:
+        self.post("baseline", lambda: self._workspace.pin())
+
+    def swap(self) -> None:
+        self.post("baseline", lambda: self._workspace.swap())
+
+    def clear_baseline(self) -> None:
+        self.post("baseline", lambda: self._workspace.clear_baseline())
+
+    def rename(self, name: str) -> None:
+        self.post("name", lambda: self._workspace.rename(name))
+
+    def recall(self, number: int) -> None:
+        self.post(f"run {number}", lambda: self._workspace.recall(number))
+
+    def compare(self, number: int) -> None:
+        self.post(f"run {number}", lambda: self._workspace.compare(number))
+
+    def delete(self, number: int) -> None:
+        self.post(f"run {number}", lambda: self._workspace.delete(number))
 
     def toggle(self) -> None:
         with self._lock:
@@ -136,31 +162,27 @@ class Session:
             self._pace()
 
     def set_driving(self, on: bool) -> None:
-        """Drive on and on with the present parameters, or show their run."""
         with self._lock:
             self._driving, self._playback.playing = on, True
-            self._playback.look_back(0.0, 0.0)  # what was shown before has no time in common with what comes
+            self._playback.look_back(0.0, 0.0)  # the times of what was shown before mean nothing now
             self._pace()
 
     def toggle_driving(self) -> None:
         self.set_driving(not self._driving)
 
     def restart_drive(self) -> None:
-        """Drive from rest."""
         with self._lock:
             if self._driving:
                 self._playback.playing = True
                 self._pace(anew=True)
 
     def set_in_view(self, in_view: bool) -> None:
-        """A page in the background stands still."""
         with self._lock:
             self._in_view = in_view
             self._pace()
 
     def set_in_front(self, tabs: frozenset[str]) -> None:
-        """Only the tabs that are seen keep up with a drag."""
-        self._intend("front", lambda: self._window.set_in_front(tabs))
+        self.post("front", lambda: self._window.set_in_front(tabs))
         self._wake.set()
 
     def _pace(self, anew: bool = False) -> None:
@@ -169,58 +191,61 @@ class Session:
         self._runner.drive(speed if self._driving else None, anew)
 
     def set_view(self, view: str) -> None:
-        self._intend("view", lambda: self._window.scene.set_view(view))
+        self.post("view", lambda: self._window.view.set_view(view))
 
     def pick_wheel(self, wheel: int | None) -> None:
-        self._intend("wheel", lambda: self._window.pick_wheel(wheel))
+        self.post("wheel", lambda: self._window.pick_wheel(wheel))
 
     def redraw_spectrum(self) -> None:
-        self._intend("spectrum", lambda: self._window.redraw_spectrum())
+        self.post("spectrum", lambda: self._window.redraw_spectrum())
 
     def show_mode(self) -> None:
-        """Show what the spectrum's tab says instead of the run, which stands still meanwhile."""
+        """Pause the run, and show the mode in its place."""
         with self._lock:
             if not self._driving:
                 self._playback.playing = False
-        self._intend("mode", lambda: self._window.show_mode())
+        self.post("mode", lambda: self._window.show_mode())
 
     def set_switch(self, switch: str, on: bool | float) -> None:
-        self._intend(switch, lambda: self._window.set_switch(switch, on))
+        self.post(switch, lambda: self._window.set_switch(switch, on))
 
     def toggle_switch(self, switch: str) -> None:
-        self._intend(switch, lambda: self._window.toggle_switch(switch))
+        self.post(switch, lambda: self._window.toggle_switch(switch))
 
     def set_dark(self, dark: bool) -> None:
-        self.ask("dark", lambda desk: desk.set_dark(dark))
+        self.post("dark", lambda: self._workspace.set_dark(dark))
 
     def prefer_dark(self, dark: bool) -> None:
-        """The look that the browser is set to."""
-        self.ask("preference", lambda desk: desk.prefer_dark(dark))
+        self.post("preference", lambda: self._workspace.prefer_dark(dark))
 
     def export(self, what: str) -> None:
-        """Wish for a download: a key of the porter's."""
-        self._intend("export", lambda: self._export(what))
+        self.post("export", lambda: self._export(what))
 
     def cancel_export(self) -> None:
-        self._porter.stop()
+        self._transfers.stop()
 
     def upload_configuration(self, name: str, content: bytes) -> None:
-        self._intend("configuration", lambda: self._porter.take_configuration(name, content))
+        self.post("configuration", lambda: self._transfers.take_configuration(name, content))
 
     def upload_run(self, name: str, content: bytes) -> None:
-        self._intend("upload", lambda: self._porter.take_run(name, content))
+        self.post("upload", lambda: self._transfers.take_run(name, content))
 
     def upload_profile(self, name: str, content: bytes) -> None:
-        self._intend("profile", lambda: self._porter.take_profile(name, content))
+        self.post("profile", lambda: self._transfers.take_profile(name, content))
 
     def add_to_road(self, road_type: str) -> None:
-        self._intend("road", lambda: self._desk.change_road(lambda config: with_part(config, road_type)))
+        self.post("road", lambda: self._workspace.change_road(lambda config: with_part(config, road_type)))
 
     def take_from_road(self) -> None:
-        self._intend("road", lambda: self._desk.change_road(without_last))
+        self.post("road", lambda: self._workspace.change_road(without_last))
 
     def edit_yaml(self) -> None:
-        self._intend("yaml", self._edit_yaml)
+        self.post("yaml", self._edit_yaml)
+
+    def post(self, kind: str, act: Callable[[], None]) -> None:
+        """Have the view's thread do something at its next frame; of each kind the newest counts."""
+        with self._lock:
+            self._posted[kind] = act
 
     @property
     def shown(self) -> Trajectory | None:
@@ -233,41 +258,36 @@ class Session:
         return None
 
     def show_now(self, act: Callable[[], None]) -> None:
-        """Have the view do something, and wait until it is done. For errands only."""
+        """Have the view do something, and wait until it is done. For background jobs only."""
         done = threading.Event()
 
         def do() -> None:
             act()
             done.set()
 
-        self._intend("errand", do)
+        self.post("now", do)
         self._wake.set()
         done.wait(SEEN_WITHIN)
 
     def seek(self, time: float) -> None:
-        """Show a time of the run, and wait until it is seen. For errands only."""
+        """Show a time of the run, and wait until it is seen. For background jobs only."""
         self.scrub(time)
         self.show_now(lambda: self._window.draw(time))
 
     def fail(self, error: Exception) -> None:
-        """Log an error and tell the user."""
         text, now = f"{type(error).__name__}: {error}", monotonic()
         if self._last_error[0] != text or now - self._last_error[1] > SAME_ERROR:
             self._last_error = (text, now)
             log.error("in a session", exc_info=error)
-            self._intend("error", lambda: self._window.report_error(error))
+            self.post("error", lambda: self._window.report_error(error))
 
     def close(self) -> None:
         """End all threads. Waits for them, but not long for a browser that still draws a picture."""
         self._closed.set()
         self._wake.set()
         self._runner.close()
-        self._porter.close()
+        self._transfers.close()
         self._thread.join()
-
-    def _intend(self, kind: str, act: Callable[[], None]) -> None:
-        with self._lock:
-            self._intents[kind] = act
 
     # ── What is seen: on the view's thread from here on ──
 
@@ -295,24 +315,24 @@ class Session:
     def _take(self, outcome: Outcome) -> None:
         """Show a run, or keep a refusal for when the user has finished typing."""
         match outcome:
-            case Finished(wish, run):
+            case Finished(request, run):
                 with self._lock:
                     self._refused = None
                     self._playback.fit(float(run.t[-1]) if len(run.t) else 0.0)
                     time = self._playback.time
                 self._good, self._shown_at = outcome, monotonic()
-                self._window.show_run(outcome, time, settled=self._runner.latest.number == wish.number)
-                self._desk.finished(outcome, monotonic())
-            case Driven(wish, state):
+                self._window.show_run(outcome, time, settled=self._runner.latest.number == request.number)
+                self._workspace.finished(outcome, monotonic())
+            case Driven(request, state):
                 with self._lock:
-                    if self._refused is not None and wish.number > self._refused.wish.number:
+                    if self._refused is not None and request.number > self._refused.request.number:
                         self._refused = None
                     if self._driving:
                         self._playback.look_back(float(state.past.t[0]), state.time)
                     time = self._playback.time
                 self._good = outcome
-                self._window.show_drive(outcome, time, settled=self._runner.latest.number == wish.number)
-                self._desk.driven(wish, monotonic())
+                self._window.show_drive(outcome, time, settled=self._runner.latest.number == request.number)
+                self._workspace.driven(request, monotonic())
             case Refused():
                 with self._lock:
                     self._refused, self._refuse_at = outcome, monotonic() + REFUSAL_DELAY
@@ -321,7 +341,7 @@ class Session:
 
     def _draw(self, elapsed: float, with_text: bool) -> None:
         with self._lock:
-            intents, self._intents = self._intents, {}
+            intents, self._posted = self._posted, {}
             steps, self._steps = self._steps, 0
             driving = self._driving
             if driving or not self._in_view:
@@ -335,8 +355,12 @@ class Session:
         for act in intents.values():
             self._attempt(act)
         if steps:
-            self._desk.go(steps)
-        if refused is not None and self._good is not None and self._runner.withdraw(refused.wish, self._good.wish):
+            self._workspace.go(steps)
+        if (
+            refused is not None
+            and self._good is not None
+            and self._runner.withdraw(refused.request, self._good.request)
+        ):
             self._window.refuse(refused, self._good.trajectory.config)
         self._window.draw(playback.time, elapsed)
         if not with_text:
@@ -347,22 +371,27 @@ class Session:
             self._window.show_time(playback, driving)
             self._window.show_status(self._runner.under_way())
             self._window.fit_page()
-        self._desk.tick(now)
+        self._workspace.tick(now)
+        missing, news = self._workspace.missing_run, self._workspace.news(now)
+        if missing is not None:
+            self._transfers.run_again(missing)
+        if news is not None:
+            self._transfers.remember(news)
 
     def _export(self, what: str) -> None:
-        run, exports = self.shown, self._window.exports
+        run, files = self.shown, self._window.files
         if self._good is None or run is None or not len(run.t):
             return
         with self._lock:
             time, playing = self._playback.time, self._playback.playing
-        self._porter.send(
+        self._transfers.send(
             what,
-            Order(
-                wish=self._good.wish,
+            Download(
+                request=self._good.request,
                 run=run,
-                baseline=self._desk.baseline,
-                size=exports.size,
-                transparent=exports.transparent,
+                baseline=self._workspace.baseline,
+                size=files.size,
+                transparent=files.transparent,
                 background=self._window.background,
                 dark=self._window.dark,
                 time=time,
@@ -374,4 +403,4 @@ class Session:
     def _edit_yaml(self) -> None:
         run = self.shown
         if run is not None:
-            self._window.exports.edit_yaml(run.config)
+            self._window.edit_yaml(run.config)

@@ -1,4 +1,4 @@
-"""What goes out of one tab as downloads, and what comes in as uploads: on a thread of its own (background.py)."""
+"""Downloads and uploads of one tab, and what its browser stores; the work is done in background jobs."""
 
 from __future__ import annotations
 
@@ -6,51 +6,43 @@ import logging
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 import viser
 
-from app.files.pictures import (
-    FIGURE_SIZE,
-    MOVIE_LENGTH,
-    MOVIE_RATE,
-    NoPictureError,
-    file_name,
-    movie_frames,
-    take_picture,
-)
+from app.files.pictures import FIGURE_SIZE, MOVIE_LENGTH, MOVIE_RATE, NoPictureError, movie_frames, take_picture
 from app.files.uploads import configuration, profile_changes, run_from
-from app.panels.controls import shown_text
+from app.format.file_names import file_name
+from app.format.parameters import shown_text
 from app.panels.files_panel import PICTURE
 from app.runs.drive import DriveState
 from app.runs.history import run_name
-from app.runs.runner import Simulate, Wish
+from app.runs.request import Request, Simulate
 from app.runs.storage import State, state_from
-from app.session.background import Errands
+from app.session.background import BackgroundJob
+from app.session.window import Window
+from app.session.workspace import Workspace
 from model.config.config import Config, ConfigError, dump_config
 from model.config.parameters import PARAMETER
 from model.simulation.trajectory import Trajectory
 
-if TYPE_CHECKING:
-    from app.session.workspace import Desk
-
-AT_REST = ("figure.png", "figure.svg", "replay", "movie")  # what shows one stretch of a drive and takes a while
-PAUSE_FIRST = "Pause the drive first (Space): what is shown then, its last seconds, is what you take home."
+AT_REST = ("figure.png", "figure.svg", "replay", "movie")  # these show one stretch of a drive and take a while to make
+PAUSE_FIRST = "Pause the drive first (Space): what is shown then, its last seconds, is what you download."
 NO_RUN = "A drive cannot be repeated from a file as a run can. Take CSV, or change from Drive to Run first."
 STORED = "trackride"  # key in the browser's storage
-STORAGE_PATIENCE = 60.0  # s in which a browser says what it has stored; afterwards that is overwritten
+STORAGE_PATIENCE = 60.0  # s that a browser has to tell what it has stored; after that we overwrite it
 
 log = logging.getLogger("trackride")
 
 
-class Office(Protocol):
-    """What the porter asks of the session, from any thread."""
+class DrawingThread(Protocol):
+    """The thread that draws, as any other thread reaches it: app.session.session.Session, or a stand-in."""
 
     @property
     def shown(self) -> Trajectory | None: ...
 
-    def ask(self, kind: str, act: Callable[[Desk], None]) -> None: ...
+    def post(self, kind: str, act: Callable[[], None]) -> None: ...
 
     def show_now(self, act: Callable[[], None]) -> None: ...
 
@@ -61,23 +53,11 @@ class Office(Protocol):
     def fail(self, error: Exception) -> None: ...
 
 
-class Front(Protocol):
-    """What the porter tells the user: app.session.window.Window, on the thread that draws only."""
-
-    def say(self, title: str, body: str) -> None: ...
-
-    def show_progress(self, doing: str) -> None: ...
-
-    def show_faults(self, title: str, faults: ConfigError) -> None: ...
-
-    def show_surroundings(self, on: bool) -> None: ...
-
-
 @dataclass(frozen=True)
-class Order:
-    """What is exported, as it was when the user asked for it."""
+class Download:
+    """What a download is made of, as it was when the user asked for it."""
 
-    wish: Wish
+    request: Request
     run: Trajectory
     baseline: Trajectory | None
     size: tuple[int, int]  # px, of a picture
@@ -86,18 +66,18 @@ class Order:
     dark: bool
     time: float  # where in the run the playback is, s
     playing: bool
-    drive: DriveState | None  # of which `run` is the past
+    drive: DriveState | None  # `run` is its past
 
     def name(self, detail: str, suffix: str) -> str:
-        """Of a file."""
+        """A name for the file."""
         stretch = f"{detail} {self.stretch}".strip()
-        return file_name(self.run.config, self.wish.base.name, self.wish.changes, stretch, suffix)
+        return file_name(self.run.config, self.request.base.name, self.request.changes, stretch, suffix)
 
     @property
     def title(self) -> str:
-        """Of a page: what was run, and what was changed."""
-        name = run_name(self.wish.base, self.run.config)
-        whole = name if name == self.wish.base.name else f"{self.wish.base.name}: {name}"
+        """A title for a page: what was run, and what was changed."""
+        name = run_name(self.request.base, self.run.config)
+        whole = name if name == self.request.base.name else f"{self.request.base.name}: {name}"
         return f"{whole}, {self.stretch}" if self.stretch else whole
 
     @property
@@ -107,32 +87,31 @@ class Order:
 
     @property
     def refusal(self) -> Mapping[str, str]:
-        """What cannot be made of it, and why."""
+        """Which files cannot be made now, and why."""
         if self.drive is None:
             return {}
         return {"run.npz": NO_RUN} | ({} if self.drive.stands else dict.fromkeys(AT_REST, PAUSE_FIRST))
 
 
 class StoppedError(Exception):
-    """Nothing is made; the message says why."""
+    """No file was made; the message says why."""
 
 
-class Porter:
+class Transfers:
     """Its public methods are for the thread that draws."""
 
     def __init__(
         self,
         client: viser.ClientHandle,
-        office: Office,
-        front: Front,
+        drawing: DrawingThread,
+        window: Window,
+        workspace: Workspace,
         simulate: Simulate,
-        intend: Callable[[str, Callable[[], None]], None],
     ) -> None:
-        """intend: has the thread that draws do something, the newest of each kind."""
-        self._client, self._office, self._front, self._intend = client, office, front, intend
+        self._client, self._drawing, self._window, self._workspace = client, drawing, window, workspace
         self._simulate = simulate
-        self._errands, self._memory = Errands(office.fail), Errands(office.fail)
-        self._makers: dict[str, tuple[str, Callable[[Order], tuple[str, bytes]]]] = {
+        self._files, self._memory = BackgroundJob(drawing.fail), BackgroundJob(drawing.fail)
+        self._makers: dict[str, tuple[str, Callable[[Download], tuple[str, bytes]]]] = {
             PICTURE: ("", self._picture),
             "figure.png": ("Drawing the figure…", partial(self._figure, ".png")),
             "figure.svg": ("Drawing the figure…", partial(self._figure, ".svg")),
@@ -143,38 +122,38 @@ class Porter:
             "movie": ("Filming…", self._movie),
         }
 
-    def send(self, what: str, order: Order) -> None:
-        """Make what is asked for, and let the browser download it."""
-        if what in order.refusal:
-            self._front.say("Nothing was downloaded", order.refusal[what])
+    def send(self, what: str, download: Download) -> None:
+        """Make a file, and let the browser download it."""
+        if what in download.refusal:
+            self._window.say("Nothing was downloaded", download.refusal[what])
             return
         doing, make = self._makers[what]
-        self._begin(partial(self._deliver, doing, partial(make, order)))
+        self._begin(partial(self._deliver, doing, partial(make, download)))
 
     def take_configuration(self, name: str, content: bytes) -> None:
-        """Wish for what an uploaded file says."""
+        """Request the configuration in an uploaded file."""
         try:
             config = configuration(name, content)
         except ConfigError as error:
-            self._front.show_faults(f"{name[:60]} cannot be used", error)
+            self._window.show_faults(f"{name[:60]} cannot be used", error)
         else:
-            self._office.ask("configuration", lambda desk: desk.use(config))
+            self._workspace.use_configuration(config)
 
     def take_profile(self, name: str, content: bytes) -> None:
-        """Make the road of an uploaded CSV file."""
+        """Request the profile in an uploaded CSV file as the road."""
         self._begin(partial(self._measure, name, content))
 
     def take_run(self, name: str, content: bytes) -> None:
-        """Make the baseline of an uploaded file."""
+        """Make the run in an uploaded file the baseline."""
         self._begin(partial(self._unpack, name, content))
 
     def stop(self) -> None:
-        """Make no more of what is under way."""
-        self._errands.stop()
+        """Stop making the file that is under way."""
+        self._files.stop()
 
     def close(self) -> None:
-        """End the threads, unless a browser that still draws holds one."""
-        self._errands.close()
+        """End the jobs; wait for them, but not long for a browser that still draws a picture."""
+        self._files.close()
         self._memory.close()
 
     def remember(self, state: str) -> None:
@@ -182,24 +161,24 @@ class Porter:
         self._client.local_storage.set_item(STORED, state)
 
     def recollect(self) -> None:
-        """Go on where this browser was at its last visit, as soon as it says where."""
+        """Ask the browser what it has stored, and let the workspace restore it."""
         self._memory.start(self._ask_browser)
 
     def run_again(self, config: Config) -> None:
-        """Make a run for the desk of which only the configuration is left, unless one is being made."""
+        """Make a run of which only the configuration is left, for the workspace. Nothing happens while one is made."""
         self._memory.start(partial(self._run_again, config))
 
     def _begin(self, job: Callable[[], None]) -> None:
-        if not self._errands.start(job):
-            self._front.say("One at a time", "The last file is still being made. Cancel it, or wait a moment.")
+        if not self._files.start(job):
+            self._window.say("One at a time", "The last file is still being made. Cancel it, or wait a moment.")
 
     def _say(self, title: str, body: str) -> None:
-        self._intend("said", lambda: self._front.say(title, body))
+        self._drawing.post("said", lambda: self._window.say(title, body))
 
     def _tell(self, doing: str) -> None:
-        self._intend("progress", lambda: self._front.show_progress(doing))
+        self._drawing.post("progress", lambda: self._window.show_progress(doing))
 
-    # ── Out: on the errands' thread ──
+    # ── Out: on the thread of the job ──
 
     def _deliver(self, doing: str, make: Callable[[], tuple[str, bytes]]) -> None:
         if doing:
@@ -215,71 +194,71 @@ class Porter:
             if doing:
                 self._tell("")
 
-    def _picture(self, order: Order) -> tuple[str, bytes]:
-        if order.transparent:
-            self._office.show_now(lambda: self._front.show_surroundings(False))
+    def _picture(self, download: Download) -> tuple[str, bytes]:
+        if download.transparent:
+            self._drawing.show_now(lambda: self._window.show_surroundings(False))
         try:
-            picture = take_picture(self._client, *order.size, None if order.transparent else order.background)
+            picture = take_picture(self._client, *download.size, None if download.transparent else download.background)
         finally:
-            if order.transparent:
-                self._intend("surroundings", lambda: self._front.show_surroundings(True))
-        return order.name("x".join(map(str, order.size)), ".png"), picture
+            if download.transparent:
+                self._drawing.post("surroundings", lambda: self._window.show_surroundings(True))
+        return download.name("x".join(map(str, download.size)), ".png"), picture
 
-    def _figure(self, suffix: str, order: Order) -> tuple[str, bytes]:
-        from app.reports.sheet import stamped_figure  # matplotlib takes a second
+    def _figure(self, suffix: str, download: Download) -> tuple[str, bytes]:
+        from app.reports.sheet import stamped_figure  # here: matplotlib takes a second to load
 
         try:
             picture = take_picture(self._client, *FIGURE_SIZE, "white")
         except NoPictureError:
-            if order.drive is not None:
-                raise  # a vehicle drawn from its side would stand on the road of a run
+            if download.drive is not None:
+                raise  # the drawing in its place would show the road of a run, not of the drive
             picture = None
-        page = stamped_figure(order.run, order.baseline, picture, order.title, suffix, order.time)
-        return order.name("figure", suffix), page
+        page = stamped_figure(download.run, download.baseline, picture, download.title, suffix, download.time)
+        return download.name("figure", suffix), page
 
-    def _run(self, suffix: str, order: Order) -> tuple[str, bytes]:
-        run = order.run if order.drive is None else order.drive.past_from_start
-        return order.name("", suffix), run.to_bytes(suffix)
+    def _run(self, suffix: str, download: Download) -> tuple[str, bytes]:
+        run = download.run if download.drive is None else download.drive.past_from_start
+        return download.name("", suffix), run.to_bytes(suffix)
 
-    def _yaml(self, order: Order) -> tuple[str, bytes]:
-        return order.name("", ".yaml"), dump_config(order.run.config).encode()
+    def _yaml(self, download: Download) -> tuple[str, bytes]:
+        return download.name("", ".yaml"), dump_config(download.run.config).encode()
 
-    def _replay(self, order: Order) -> tuple[str, bytes]:
+    def _replay(self, download: Download) -> tuple[str, bytes]:
         from app.files.replay import replay_html
 
-        road = None if order.drive is None else order.drive.road
+        road = None if download.drive is None else download.drive.road
         page = replay_html(
-            order.run, order.baseline, order.title, order.dark, should_stop=self._errands.stopped, road=road
+            download.run, download.baseline, download.title, download.dark, should_stop=self._files.stopped, road=road
         )
         if page is None:
             raise StoppedError("The replay was cancelled.")
-        return order.name("replay", ".html"), page.encode()
+        return download.name("replay", ".html"), page.encode()
 
-    def _movie(self, order: Order) -> tuple[str, bytes]:
+    def _movie(self, download: Download) -> tuple[str, bytes]:
         from app.files.movie import movie
 
-        first, last = float(order.run.t[0]), float(order.run.t[-1])
-        start = max(min(order.time, last - MOVIE_LENGTH), first)
+        first, last = float(download.run.t[0]), float(download.run.t[-1])
+        start = max(min(download.time, last - MOVIE_LENGTH), first)
         try:
-            film, suffix = movie(self._watched(order.run, start, min(start + MOVIE_LENGTH, last)), MOVIE_RATE)
+            film, suffix = movie(self._watched(download.run, start, min(start + MOVIE_LENGTH, last)), MOVIE_RATE)
         finally:
-            self._office.seek(order.time)
-            if order.playing:
-                self._office.toggle()
-        return order.name("", suffix), film
+            self._drawing.seek(download.time)
+            if download.playing:
+                self._drawing.toggle()
+        return download.name("", suffix), film
 
     def _watched(self, run: Trajectory, start: float, end: float) -> Iterator[np.ndarray]:
         """The frames of a movie, as long as the run is shown and the user wants them."""
-        frames = movie_frames(self._client, self._office.seek, start, end)
+        frames = movie_frames(self._client, self._drawing.seek, start, end)
         for number, frame in enumerate(frames, 1):
-            if self._errands.stopped():
+            if self._files.stopped():
                 raise StoppedError("The movie was cancelled.")
-            if self._office.shown is not run:
+            if self._drawing.shown is not run:
                 raise StoppedError("The run changed while it was filmed. Leave it alone until the movie is done.")
             self._tell(f"Filming… {100 * number * (1 / MOVIE_RATE) / (end - start):.0f} %")
             yield frame
 
-    # ── In: on the errands' thread ──
+    # ── In: on the thread of the job ──
 
     def _ask_browser(self) -> None:
         state: State | None = None
@@ -288,7 +267,7 @@ class Porter:
             state = None if stored is None else state_from(stored)
         except (TimeoutError, RuntimeError, ValueError) as error:
             log.info("nothing from the browser's storage: %s", error)
-        self._office.ask("restore", lambda desk: desk.restore(state))
+        self._drawing.post("restore", lambda: self._workspace.restore(state))
 
     def _run_again(self, config: Config) -> None:
         run: Trajectory | None = None
@@ -296,19 +275,19 @@ class Porter:
             run = self._simulate(config, on_progress=lambda part: None, should_stop=self._memory.stopped)
         finally:
             if not self._memory.stopped():
-                self._office.ask("again", lambda desk: desk.made_again(config, run))
+                self._drawing.post("again", lambda: self._workspace.made_again(config, run))
 
     def _measure(self, name: str, content: bytes) -> None:
-        run = self._office.shown
+        run = self._drawing.shown
         if run is None:
             return
         try:
             changes = profile_changes(name, content, run.config)
         except ConfigError as error:
             faults = error
-            self._intend("faults", lambda: self._front.show_faults(f"{name[:60]} cannot be used", faults))
+            self._drawing.post("faults", lambda: self._window.show_faults(f"{name[:60]} cannot be used", faults))
             return
-        self._office.ask("profile", lambda desk: desk.change_road(lambda config: changes))
+        self._drawing.post("profile", lambda: self._workspace.change_road(lambda config: changes))
         self._say("Another road", f"{name[:60]}: {shown_text(PARAMETER['road.points'], changes['road.points'])}.")
 
     def _unpack(self, name: str, content: bytes) -> None:
@@ -316,8 +295,8 @@ class Porter:
             run = run_from(name, content)
         except ConfigError as error:
             faults = error
-            self._intend("faults", lambda: self._front.show_faults(f"{name[:60]} cannot be used", faults))
+            self._drawing.post("faults", lambda: self._window.show_faults(f"{name[:60]} cannot be used", faults))
         except ValueError as error:
             self._say("No run", str(error))
         else:
-            self._office.ask("baseline", lambda desk: desk.take_in(run, name.removesuffix(".npz")))
+            self._drawing.post("baseline", lambda: self._workspace.take_in(run, name.removesuffix(".npz")))

@@ -11,24 +11,25 @@ import viser
 
 from app.format.colours import wheel_palette
 from app.format.load_unit import load_unit
+from app.format.parameters import refusal
+from app.panels.actions import Actions
 from app.panels.callbacks import by_user
-from app.panels.controls import Wishes, refusal
-from app.panels.files_panel import Exporter, ExportsPanel
-from app.panels.notifications import Notices
-from app.panels.page_layout import LEFT, Layout, Screen
+from app.panels.configuration_windows import YamlWindow, show_faults
+from app.panels.files_panel import FilesPanel
+from app.panels.notifications import Notifications
+from app.panels.page_layout import LEFT, PageLayout, Screen
 from app.panels.page_setup import add_hints, add_page, apply_theme
-from app.panels.parameter_panel import ControlPanel
-from app.panels.playback_panel import PlaybackPanel, Player
+from app.panels.parameter_panel import ParameterPanel
+from app.panels.playback_panel import PlaybackPanel
 from app.panels.plot_panel import RUNS, PlotPanel
-from app.panels.runs_panel import Keeping, RunsPanel
-from app.panels.shortcuts import Keys, add_keys
-from app.panels.spectrum_panel import Analyst
+from app.panels.runs_panel import RunsPanel
+from app.panels.shortcuts import add_shortcuts
 from app.panels.status_line import BUSY_DELAY, drive_facts, progress_line, run_line, status_line
-from app.panels.view_panel import Viewer, ViewPanel
-from app.panels.wheel_card import Picker, WheelCard
+from app.panels.view_panel import ViewPanel
+from app.panels.wheel_card import WheelCard
 from app.runs.drive import DriveState
 from app.runs.playback import Playback
-from app.runs.runner import Driven, Failed, Finished, Refused
+from app.runs.request import Driven, Failed, Finished, Refused
 from app.tabs.road_profile import RoadAhead
 from app.view3d.mode_animation import PERIOD, ModeShow
 from model.analysis.ride import WheelState
@@ -38,10 +39,10 @@ from model.simulation.trajectory import Trajectory
 
 ROAD_EVERY = 0.35  # s between two side views of the road
 FOLDERS = "View", "Export", "Import and presets"
-LAID_OUT_WITHIN = 3.0  # s in which a page says that its panels stand, or else is taken to have them
+LAID_OUT_WITHIN = 3.0  # s in which a page tells that its panels are laid out; after that we take it that they are
 
 
-class Scene(Protocol):
+class VehicleView(Protocol):
     """The 3-D view: app.view3d.view.Stage, or a stand-in."""
 
     follow: bool
@@ -72,16 +73,6 @@ class Scene(Protocol):
     def set_dark(self, dark: bool) -> None: ...
 
 
-class Actions(Wishes, Player, Viewer, Picker, Keeping, Exporter, Analyst, Keys, Protocol):
-    """What the panels ask of the session."""
-
-    def set_in_view(self, in_view: bool) -> None: ...
-
-    def set_in_front(self, tabs: frozenset[str]) -> None: ...
-
-    def prefer_dark(self, dark: bool) -> None: ...
-
-
 class Window:
     """Panels, plots and 3-D view of one tab."""
 
@@ -92,22 +83,22 @@ class Window:
         preset: str,
         config: Config,
         actions: Actions,
-        make_scene: Callable[[viser.ClientHandle, bool], Scene],
+        make_view: Callable[[viser.ClientHandle, bool], VehicleView],
     ) -> None:
         self._client, self._actions = client, actions
-        self._dark = False  # until the browser has said how it is set
+        self._dark = False  # until the browser tells its setting
         self._run: Trajectory | None = None
         self._baseline: Trajectory | None = None
-        self._drive: DriveState | None = None  # the last of the drive that is shown
+        self._drive: DriveState | None = None  # the newest state of the drive that is shown
         self._drawn: tuple[int, float] | None = None  # run and time that the 3-D view shows
-        self._to_scene: Trajectory | None = None  # a run that the 3-D view has not got yet
-        self._stands_at = monotonic() + LAID_OUT_WITHIN  # when the page has its panels, s
-        self._filled = False  # the page has what is not seen at first
-        self._mode: ModeShow | None = None  # in the run's place
+        self._to_view: Trajectory | None = None  # a run that the 3-D view does not have yet
+        self._stands_at = monotonic() + LAID_OUT_WITHIN  # when the panels of the page are laid out, s
+        self._filled = False  # the page also has what is not seen at first
+        self._mode: ModeShow | None = None  # shown in the place of the run
         self._run_number = 0
         self._road_due = 0.0  # monotonic s
         self._road_ahead = RoadAhead()
-        self._notices = Notices(client)
+        self._notifications = Notifications(client)
         self._screen = Screen(client.camera.image_width, client.camera.image_height)
         layout = self._screen.first()
         gui = client.gui
@@ -122,48 +113,48 @@ class Window:
                 by_user(lambda event: actions.set_in_front(frozenset(event.target.value.split(","))), actions.fail)
             )
             signs.night.on_update(by_user(lambda event: actions.prefer_dark(event.target.value), actions.fail))
-            self._controls = ControlPanel(gui, presets, preset, config, actions)
+            self._controls = ParameterPanel(gui, presets, preset, config, actions)
             with self._controls.middle:
                 self._folders = [gui.add_folder(name, expand_by_default=False) for name in FOLDERS]
             self._plots_panel = gui.add_panel()
             self._plots = PlotPanel(client, self._plots_panel, layout.page_height, self._dark, actions)
             self.runs = RunsPanel(gui, self._plots.runs_tab, actions)
             self._plots_panel.dock_right()
-            self._player = PlaybackPanel(gui, actions)
+            self._playback = PlaybackPanel(gui, actions)
             self._card = WheelCard(gui, actions)
             self._resize(layout)
-        self.scene = make_scene(client, self._dark)
-        self.scene.on_pick(actions.pick_wheel)
+        self.view = make_view(client, self._dark)
+        self.view.on_pick(actions.pick_wheel)
 
     def _fill(self) -> None:
-        """Add what is not seen at first: half of the page's work, and the rest is there sooner without it."""
+        """Add what is not seen at first. It is half of the page's work, and without it the rest appears sooner."""
         gui, actions = self._client.gui, self._actions
         view, out, into = self._folders
         with self._client.atomic():
             self._controls.fill()
-            self._view = ViewPanel(gui, view, self._dark, actions)
-            self.exports = ExportsPanel(gui, out, into, actions)
-            add_keys(gui, actions)
+            self._view_panel = ViewPanel(gui, view, self._dark, actions)
+            self.files = FilesPanel(gui, out, into, actions)
+            add_shortcuts(gui, actions)
             add_hints(gui)
         self._filled = True
 
     # ── Runs ──
 
     def show_run(self, done: Finished, time: float, *, settled: bool) -> None:
-        """Show a finished run at `time`, s. settled: no newer wish is on its way, so that the controls may follow."""
+        """Show a finished run at `time`, s. settled: no newer request is on its way; the controls may follow."""
         self._leave_mode()
         run = done.trajectory
-        self._run, self._run_number, self._drive = run, done.wish.number, None
+        self._run, self._run_number, self._drive = run, done.request.number, None
         self._plot(time)
-        self._to_scene, self._drawn = run, None
+        self._to_view, self._drawn = run, None
         if settled:
-            self._controls.show(run.config, touched=done.wish.touched)
+            self._controls.show(run.config, touched=done.request.touched)
         if run.complete:
-            self._notices.forget("diverged")
+            self._notifications.forget("diverged")
         else:
             body = f"{run.status[0].upper()}{run.status[1:]}. The plots show the run up to there. {run.advice}"
-            self._notices.show("diverged", "The run did not come to its end", body, "orange", stays=True)
-        self._notices.forget("refused")
+            self._notifications.show("diverged", "The run did not come to its end", body, "orange", stays=True)
+        self._notifications.forget("refused")
 
     def show_drive(self, driven: Driven, time: float, *, settled: bool) -> None:
         """Show how far the drive has come, or where in its past the user is, at `time`, s.
@@ -176,48 +167,48 @@ class Window:
         if before is None or before.past is not state.past:
             self._run = state.past
             self._plot(time)
-        self._to_scene = None
-        self.scene.show_live(state.recent, state.road)
-        self.scene.draw(time)
+        self._to_view = None
+        self.view.show_live(state.recent, state.road)
+        self.view.draw(time)
         self._drawn = (self._run_number, time)
         if settled and (before is None or before.config != state.config):
-            self._controls.show(state.config, touched=driven.wish.touched)
+            self._controls.show(state.config, touched=driven.request.touched)
         if state.ended:
             body = f"{state.ended[0].upper()}{state.ended[1:]}. {state.advice} Then press Restart."
-            self._notices.show("diverged", "The drive came to an end", body, "orange", stays=True)
+            self._notifications.show("diverged", "The drive came to an end", body, "orange", stays=True)
         else:
-            self._notices.forget("diverged")
+            self._notifications.forget("diverged")
 
     def show_baseline(self, baseline: Trajectory | None) -> None:
-        """Compare with this run from now on, or with None no more."""
+        """Compare with this run from now on; None: with no run."""
         self._end_mode()
         self._baseline = baseline
         if self._run is not None:
             self._plot(self._plots.time)
-        self.scene.show_ghost(baseline)
+        self.view.show_ghost(baseline)
 
     def show_mode(self) -> None:
-        """Show the mode that is chosen instead of the run, until the run moves on or another one comes."""
+        """Show the chosen mode instead of the run, until the run plays on or another run comes."""
         mode, run = self._plots.spectrum.chosen, self._run
         if mode is None or run is None or self._drive is not None or not len(run.t):
             self._end_mode()
             return
         x = float(np.interp(self._plots.time, run.t, run.q[:, run.system.chassis, 0]))
-        self._mode, self._to_scene = ModeShow(run.config, mode, x), None
-        self.scene.show(self._mode.swing)
-        self.scene.show_ghost(self._mode.rest)
+        self._mode, self._to_view = ModeShow(run.config, mode, x), None
+        self.view.show(self._mode.swing)
+        self.view.show_ghost(self._mode.rest)
 
     def _end_mode(self) -> None:
         """Show the run again."""
         if self._mode is not None and self._run is not None:
             self._leave_mode()
-            self.scene.show(self._run)
+            self.view.show(self._run)
 
     def _leave_mode(self) -> None:
-        """Make ready for something else to be shown."""
+        """Show the mode no longer; something else will be shown."""
         if self._mode is not None:
             self._mode, self._drawn = None, None
-            self.scene.show_ghost(self._baseline)
+            self.view.show_ghost(self._baseline)
             self._plots.spectrum.choose_run()
 
     def redraw_spectrum(self) -> None:
@@ -228,24 +219,24 @@ class Window:
         self._controls.offer(presets, chosen)
 
     def refuse(self, refused: Refused, instead: Config) -> None:
-        """Say what is wrong with a wish, and go back to the configuration that was good."""
-        body = " ".join(refusal(fault, refused.wish.changes.get(fault.path), instead) for fault in refused.faults)
-        self._notices.show("refused", "Not possible", body, "red")
+        """Say what is wrong with a request, and let the controls show a valid configuration instead."""
+        body = " ".join(refusal(fault, refused.request.changes.get(fault.path), instead) for fault in refused.faults)
+        self._notifications.show("refused", "Not possible", body, "red")
         self._controls.show(instead)
 
     def show_value(self, key: str, value: Any) -> None:
         """Move a control."""
         self._controls[key].show(value)
 
-    def was_moved_to_end(self, key: str, wished: Any) -> bool:
-        """Whether a slider stands at its end because the page moved it there from the value wished for, beyond it."""
-        return self._controls[key].was_moved_to_end(wished)
+    def was_moved_to_end(self, key: str, requested: Any) -> bool:
+        """Whether the page moved a slider to its end because the requested value lies beyond it."""
+        return self._controls[key].was_moved_to_end(requested)
 
     def report_failure(self, failed: Failed) -> None:
-        self._notices.show("refused", "No run", failed.message, "red")
+        self._notifications.show("refused", "No run", failed.message, "red")
 
     def show_status(self, under_way: tuple[int, float, float] | None) -> None:
-        """Say which run is shown, or how far the next is (number, part done, seconds so far)."""
+        """Say which run is shown, or how far the next one has come (number, part done, seconds so far)."""
         if self._drive is not None:
             self._controls.status.content = status_line("Drive", drive_facts(self._drive))
         elif self._mode is not None:
@@ -262,43 +253,43 @@ class Window:
     def draw(self, time: float, elapsed: float = 0.0) -> None:
         """The 3-D view at a time of the run, s, `elapsed` s of real time after it was drawn last.
 
-        Of a drive that goes on, each instant is drawn as it comes. A page that is still laying out its panels is not
-        given anything more yet.
+        Of a drive that goes on, each instant is drawn as it comes. A page that is still laying out its panels gets
+        nothing more yet.
         """
         if monotonic() < self._stands_at:
             return
         if not self._filled:
             self._fill()
-        if self._to_scene is not None:
-            self.scene.show(self._to_scene)
-            self._to_scene = None
+        if self._to_view is not None:
+            self.view.show(self._to_view)
+            self._to_view = None
         if self._mode is not None:
             if self._mode.since is None:
                 self._mode.since = time
             if self._mode.since == time:
                 if elapsed:
-                    self.scene.draw(self._mode.move_on(elapsed))
+                    self.view.draw(self._mode.move_on(elapsed))
                 return
             self._end_mode()
         goes_on = self._drive is not None and not self._drive.stands
         if not goes_on and self._run is not None and self._drawn != (self._run_number, time):
-            self.scene.draw(time)
+            self.view.draw(time)
             self._drawn = (self._run_number, time)
 
     def show_time(self, playback: Playback, driving: bool) -> None:
         """Player and time cursors."""
         if driving:
-            self._player.show_drive(playback, self._drive)
+            self._playback.show_drive(playback, self._drive)
         else:
-            self._player.show(playback)
+            self._playback.show(playback)
         if self._drive is None or self._drive.stands:
             self._plots.point_at(playback.time)
         self._plots.settle()
-        self.scene.write_loads()
+        self.view.write_loads()
         self._show_wheel()
         self._show_road(playback.time)
         if self._filled and self._run is not None:
-            self._view.show_load_scale(self.scene.load_top, load_unit(self._run.system))
+            self._view_panel.show_load_scale(self.view.load_top, load_unit(self._run.system))
 
     def _show_road(self, time: float) -> None:
         """The side view of the road about the vehicle at a time of the run or drive, s.
@@ -321,7 +312,7 @@ class Window:
     # ── Looks ──
 
     def set_in_front(self, tabs: frozenset[str]) -> None:
-        """Tell which tabs of the plots are seen, and so that the page stands."""
+        """Take note of the tabs of the plots that are seen; from this we also know that the page is laid out."""
         self._stands_at = 0.0
         self._plots.set_in_front(tabs)
 
@@ -331,7 +322,7 @@ class Window:
         return RUNS in self._plots.in_front
 
     def fit_page(self) -> None:
-        """Sizes of the panels, when the page's has changed."""
+        """Change the sizes of the panels when the size of the page has changed."""
         camera = self._client.camera
         layout = self._screen.update(camera.image_width, camera.image_height)
         if layout is not None:
@@ -340,19 +331,19 @@ class Window:
     def set_dark(self, dark: bool) -> None:
         self._dark = dark
         if self._filled:
-            self._view.show_dark(dark)
+            self._view_panel.show_dark(dark)
         apply_theme(self._client.gui, dark)
         self._plots.set_dark(dark)
-        self.scene.set_dark(dark)
+        self.view.set_dark(dark)
 
     def pick_wheel(self, wheel: int | None) -> None:
-        """Show a wheel's card and its curve alone; None, or the wheel that is picked already: no wheel's."""
+        """Show the card of a wheel and fade the other curves; None, or the wheel that is picked already: no card."""
         self._plots.single_out(self._card.pick(wheel))
         self._show_wheel()
 
     def _show_wheel(self) -> None:
         wheel = self._card.wheel
-        state = self.scene.wheel_state(wheel) if wheel is not None else None
+        state = self.view.wheel_state(wheel) if wheel is not None else None
         if wheel is not None and state is not None and self._run is not None:
             palette = wheel_palette(self._run.system.n, self._run.system.m, self._dark)
             self._card.show(state, palette.wheels[wheel], load_unit(self._run.system))
@@ -361,16 +352,16 @@ class Window:
 
     def set_switch(self, switch: str, on: bool | float) -> None:
         """Turn something of the 3-D view on or off, or set its size."""
-        setattr(self.scene, switch, on)
+        setattr(self.view, switch, on)
         self._drawn = None
 
     def toggle_switch(self, switch: str) -> None:
-        """Turn a switch of the 3-D view over, and its checkbox."""
-        self.set_switch(switch, self._view.toggle(switch))
+        """Turn a switch of the 3-D view, and its checkbox, on if it is off, and off if it is on."""
+        self.set_switch(switch, self._view_panel.toggle(switch))
 
     def show_surroundings(self, on: bool) -> None:
         """Sky and ground."""
-        self.scene.show_surroundings = on
+        self.view.show_surroundings = on
 
     @property
     def dark(self) -> bool:
@@ -378,28 +369,32 @@ class Window:
 
     @property
     def background(self) -> str:
-        """Colour behind the scene in pictures."""
+        """Colour behind the vehicle in pictures."""
         return "#1a1b1e" if self._dark else "#ffffff"
 
     def report_error(self, error: Exception) -> None:
         text = str(error) or type(error).__name__
-        self._notices.show("error", "Something went wrong", f"{text} (details are in the terminal).", "red")
+        self._notifications.show("error", "Something went wrong", f"{text} (details are in the terminal).", "red")
 
     def say(self, title: str, body: str) -> None:
-        self._notices.show("said", title, body, "blue")
+        self._notifications.show("said", title, body, "blue")
 
     def show_faults(self, title: str, faults: ConfigError) -> None:
-        """All that is wrong with a configuration from outside."""
-        self.exports.show_faults(title, faults)
+        """Show all that is wrong with a configuration from outside."""
+        show_faults(self._client.gui, title, faults, self._actions)
+
+    def edit_yaml(self, config: Config) -> None:
+        """Open a configuration as text."""
+        YamlWindow(self._client.gui, config, self._actions)
 
     def show_progress(self, doing: str) -> None:
-        """What is being made for a download; empty: nothing."""
-        self._notices.progress(doing)
+        """Say what is being made for a download; empty: nothing."""
+        self._notifications.progress(doing)
 
-    def _resize(self, layout: Layout) -> None:
+    def _resize(self, layout: PageLayout) -> None:
         self._plots_panel.set_width(layout.right)
         self._plots.set_page_height(layout.page_height)
-        self._player.place(layout.player_x, layout.player_width)
+        self._playback.place(layout.player_x, layout.player_width)
         self._card.place(layout.player_x, layout.player_width)
 
     def _plot(self, time: float) -> None:

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any, Protocol
+from typing import Any
 
-from app.runs.history import REST, Changes, Kept, Runs, first_wish, run_name, same
-from app.runs.runner import Finished, Wish
+from app.runs.history import REST, Changes, Kept, Runs, run_name
+from app.runs.request import Finished, Request, first_request, same
+from app.runs.runner import Runner
 from app.runs.storage import PRESETS, State, state_text
 from app.session.window import Window
 from model.config.config import Config, ConfigError
@@ -20,48 +21,33 @@ COMPARE_EVERY = 0.3  # s from one table of figures to the next while runs follow
 CALM = 0.3  # s … or without another run when it is not
 
 
-class Wishing(Protocol):
-    """What the desk asks of the runner."""
+class Workspace:
+    """Shows what it keeps in the window, and requests runs. Times are monotonic, in s."""
 
-    @property
-    def latest(self) -> Wish: ...
-
-    def change(self, update: Callable[[Wish], Wish]) -> None: ...
-
-
-class Helper(Protocol):
-    """What the desk asks of the porter; neither blocks."""
-
-    def remember(self, state: str) -> None: ...
-
-    def run_again(self, config: Config) -> None: ...
-
-
-class Desk:
-    """Shows what it keeps in the window, and wishes for runs."""
-
-    def __init__(self, window: Window, runner: Wishing, presets: Mapping[str, Config], helper: Helper) -> None:
+    def __init__(self, window: Window, runner: Runner, presets: Mapping[str, Config]) -> None:
         """presets: name -> configuration."""
-        self._window, self._runner, self._helper = window, runner, helper
+        self._window, self._runner = window, runner
         self._presets = dict(presets)
         self._own: list[str] = []  # names of the user's presets, oldest first
         self._start = runner.latest
         self._started_with = self._start.config()
         self._changes = Changes(self._start)
         self._runs = Runs()
-        self._good: Finished | None = None  # the run that is shown; None: a drive, or nothing yet
+        self._good: Finished | None = None  # the run that is shown; None: a drive, or no run yet
         self._good_at = 0.0  # when it came, s
         self._rested = False  # the user has rested on it
         self._kept: Kept | None = None  # the same, once it is kept
         self._before_drive = ""  # name of the run whose figures stay while a drive is shown
         self._baseline: Kept | None = None
-        self._compared = self._named = True  # the table of figures, and the name, are those of the run that is shown
+        self._compared = self._named = True  # the table of figures and the name belong to the run that is shown
         self._compared_at = 0.0  # when it was made, s
-        self._news_at: float | None = None  # when something came up that the browser is to store, s; None: nothing
+        self._news_at: float | None = (
+            None  # when there was something new for the browser to store, s; None: nothing new
+        )
         self._stored = ""
         self._dark: bool | None = None  # the look that the user has chosen
         self._prefers_dark = False
-        self._restored = False  # the browser has said what it has, and may be told anew
+        self._restored = False  # the browser has told what it has stored; from then on we may overwrite it
 
     @property
     def presets(self) -> Mapping[str, Config]:
@@ -77,20 +63,20 @@ class Desk:
 
     def finished(self, done: Finished, now: float) -> None:
         """A run is shown, at `now`, s."""
-        fresh = self._good is None or not same(self._good.wish, done.wish)
+        fresh = self._good is None or not same(self._good.request, done.request)
         self._good, self._good_at, self._rested, self._before_drive = done, now, False, ""
         self._complete(done.trajectory)
         self._kept = self._runs.find(done.trajectory.config)
         self._compared = False
         self._named &= not fresh
-        self._came_true(done.wish, now)
+        self._came_true(done.request, now)
 
-    def driven(self, wish: Wish, now: float) -> None:
+    def driven(self, request: Request, now: float) -> None:
         """A drive is shown, at `now`, s."""
         if self._good is not None:
             self._before_drive, self._good, self._kept = self._name, None, None
             self._show()
-        self._came_true(wish, now)
+        self._came_true(request, now)
 
     def set_dark(self, dark: bool) -> None:
         """Change the look of the page."""
@@ -99,7 +85,7 @@ class Desk:
         self._news_at = 0.0
 
     def prefer_dark(self, dark: bool) -> None:
-        """Say how the browser is set: the look of the page until the user chooses another."""
+        """Take the look that the browser is set to, until the user chooses one."""
         self._prefers_dark = dark
         if self._restored:
             self._look()
@@ -110,41 +96,54 @@ class Desk:
             self._window.set_dark(dark)
 
     def tick(self, now: float) -> None:
-        """Do what waits for a moment of rest; `now`, s."""
-        if self._baseline is not None and self._baseline.run is None:
-            self._helper.run_again(self._baseline.config)
+        """Do what waits until the user rests; `now`, s. To be called several times a second."""
         if self._good is not None and len(self._good.trajectory.t):
             seen = self._window.runs_in_front and now - self._compared_at >= COMPARE_EVERY
-            rests = not self._rested and now - self._good_at >= REST and self._settled(self._good.wish)
+            rests = not self._rested and now - self._good_at >= REST and self._settled(self._good.request)
             if seen or rests or now - self._good_at >= CALM:
                 self._tell(now)
             if rests:
                 self._rested = True
                 self._keep(self._good)
-        if self._restored and self._news_at is not None and now - self._news_at >= REST:
-            self._remember()
 
-    def _came_true(self, wish: Wish, now: float) -> None:
-        if self._settled(wish):
-            if not same(wish, self._changes.present):
+    @property
+    def missing_run(self) -> Config | None:
+        """The configuration of the baseline, if its run has to be made again (see `made_again`); else None."""
+        return None if self._baseline is None or self._baseline.run is not None else self._baseline.config
+
+    def news(self, now: float) -> str | None:
+        """The text that the browser is to store, given once, when the user has rested; None: nothing new. `now`, s."""
+        if not self._restored or self._news_at is None or now - self._news_at < REST:
+            return None
+        self._news_at = None
+        own = [self._presets[name] for name in self._own]
+        state = state_text(self._started_with, self._changes.present, own, self._runs, self._baseline, self._dark)
+        if state == self._stored:
+            return None
+        self._stored = state
+        return state
+
+    def _came_true(self, request: Request, now: float) -> None:
+        if self._settled(request):
+            if not same(request, self._changes.present):
                 self._news_at = now
-            self._changes.note(wish, now)
-            self._offer(wish.base)
+            self._changes.note(request, now)
+            self._offer(request.base)
 
-    def _settled(self, wish: Wish) -> bool:
-        """Whether no newer wish is on its way."""
-        return self._runner.latest.number == wish.number
+    def _settled(self, request: Request) -> bool:
+        """Whether no newer request is on its way."""
+        return self._runner.latest.number == request.number
 
     # ── Steps ──
 
     def go(self, steps: int) -> None:
-        """Undo so many steps when negative, or redo them."""
+        """Redo so many steps, or undo them when negative."""
         under_way = not same(self._runner.latest, self._changes.present)
-        wish = self._changes.go(steps + 1 if under_way and steps < 0 else steps)
-        if wish is None and under_way and steps < 0:
-            wish = self._changes.present
-        if wish is not None:
-            self._wish(wish)
+        request = self._changes.go(steps + 1 if under_way and steps < 0 else steps)
+        if request is None and under_way and steps < 0:
+            request = self._changes.present
+        if request is not None:
+            self._request(request)
         else:
             self._window.say("Nothing to undo" if steps < 0 else "Nothing to redo", "All parameters stay as they are.")
 
@@ -165,16 +164,16 @@ class Desk:
             return
         other = self._baseline
         self._set_baseline(self._keep(self._good))
-        self._wish(other.wish)
+        self._request(other.request)
 
-    def clear(self) -> None:
-        """Compare no more."""
+    def clear_baseline(self) -> None:
+        """Compare with no run."""
         self._set_baseline(None)
 
     def recall(self, number: int) -> None:
         """Show a run that is kept."""
         if number in self._runs:
-            self._wish(self._runs[number].wish)
+            self._request(self._runs[number].request)
 
     def compare(self, number: int) -> None:
         """Make a run that is kept the baseline."""
@@ -182,11 +181,11 @@ class Desk:
             self._set_baseline(self._runs[number])
 
     def delete(self, number: int) -> None:
-        """Keep a run no more; as the baseline it stays."""
+        """Keep a run no more. If it is the baseline, it stays the baseline."""
         self._runs.delete(number)
         if self._kept is not None and self._kept.number == number:
-            self._kept, self._rested = None, True  # not to be kept again at once
-        self._news()
+            self._kept, self._rested = None, True  # so that it is not kept again at once
+        self._note_news()
 
     def rename(self, name: str) -> None:
         """Name the run that is shown, and keep it."""
@@ -195,56 +194,56 @@ class Desk:
         self._kept = self._runs.rename(self._keep(self._good).number, name)
         if self._baseline is not None and self._baseline.number == self._kept.number:
             self._baseline = self._kept
-        self._news()
+        self._note_news()
 
     def take_in(self, run: Trajectory, name: str) -> None:
         """Keep a run from outside, and make it the baseline."""
-        self._set_baseline(self._runs.keep(Wish(run.config), run, name))
+        self._set_baseline(self._runs.keep(Request(run.config), run, name))
         self._window.say("Baseline pinned", f"{name}. What is shown is compared with it.")
 
     def made_again(self, config: Config, run: Trajectory | None) -> None:
-        """The run of a configuration that was kept, or None where there can be none."""
+        """Take the run of `missing_run`; None: it could not be made."""
         if run is not None and len(run.t):
             self._complete(run)
         elif self._baseline is not None and self._baseline.config == config:
             self._window.say("No baseline", f"{self._baseline.name} cannot be run again.")
-            self.clear()
+            self.clear_baseline()
 
     def _complete(self, run: Trajectory) -> None:
-        """Put a run where only its configuration was left."""
+        """Give the run to the kept run, and to the baseline, of which only the configuration was left."""
         self._runs.complete(run)
         baseline = self._baseline
         if baseline is not None and baseline.run is None and baseline.config == run.config:
             self._set_baseline(replace(baseline, run=run))
 
     def _keep(self, good: Finished) -> Kept:
-        self._kept = self._runs.keep(good.wish, good.trajectory)
-        self._news()
+        self._kept = self._runs.keep(good.request, good.trajectory)
+        self._note_news()
         return self._kept
 
     def _set_baseline(self, run: Kept | None) -> None:
         self._baseline = run
         self._window.show_baseline(self.baseline)
         self._compared, self._compared_at = False, 0.0
-        self._news()
+        self._note_news()
 
-    def _news(self) -> None:
+    def _note_news(self) -> None:
         """Show runs and baseline, and have the browser store them soon."""
         self._news_at = 0.0
         self._show()
 
     @property
     def _name(self) -> str:
-        """Of the run that is shown."""
+        """The name of the run that is shown."""
         if self._kept is not None:
             return self._kept.name
-        return "" if self._good is None else run_name(self._good.wish.base, self._good.trajectory.config)
+        return "" if self._good is None else run_name(self._good.request.base, self._good.trajectory.config)
 
     def _show(self) -> None:
         self._window.runs.show(self._runs, self._name, self._kept, self._baseline, self._before_drive)
 
     def _tell(self, now: float) -> None:
-        """Say of the run that is shown what has not been said yet."""
+        """Show name and figures of the run, unless they are shown already."""
         assert self._good is not None
         if not self._named:
             self._named = True
@@ -256,22 +255,22 @@ class Desk:
 
     # ── Configurations ──
 
-    def use(self, config: Config) -> None:
-        """Wish for a configuration from outside: for changes to the present preset if it has that one's name."""
+    def use_configuration(self, config: Config) -> None:
+        """Request a configuration from outside; as changes to the present preset if both have the same name."""
         base = self._runner.latest.base
-        self._wish(first_wish(base, config) if config.name == base.name else Wish(config))
+        self._request(first_request(base, config) if config.name == base.name else Request(config))
 
     def change_road(self, changes_of: Callable[[Config], dict[str, Any]]) -> None:
-        """Wish for changes to the road of the latest wish (dotted key -> value), if that is a possible one."""
+        """Request changes (dotted key -> value) to the road of the latest request, if that request is valid."""
 
-        def changed(wish: Wish) -> Wish:
+        def changed(request: Request) -> Request:
             try:
-                changes = changes_of(wish.config())
+                changes = changes_of(request.config())
             except ConfigError:  # it will be refused
-                return wish
+                return request
             for key, value in changes.items():
-                wish = wish.changed(key, value)
-            return Wish(wish.base, wish.changes)
+                request = request.changed(key, value)
+            return Request(request.base, request.changes)
 
         self._runner.change(changed)
 
@@ -292,12 +291,12 @@ class Desk:
             if self._presets[own].name == name:
                 self._presets[own] = config
         self._offer(config)
-        self._wish(Wish(config))
+        self._request(Request(config))
         self._news_at = 0.0
         self._window.say("Preset saved", f"{name} is among the presets of this browser.")
 
     def _offer(self, base: Config) -> None:
-        """Show this preset as the chosen one, also when it is new."""
+        """Show this preset as the chosen one; add it if it is new."""
         name = next((name for name, config in self._presets.items() if config == base), "")
         if not name:
             name = next(f"own {k}" for k in range(1, PRESETS + 2) if f"own {k}" not in self._presets)
@@ -307,14 +306,14 @@ class Desk:
                 del self._presets[self._own.pop(0)]
         self._window.show_presets(self._presets, name)
 
-    def _wish(self, wish: Wish) -> None:
-        """Wish for all of it: the controls follow."""
-        self._runner.change(lambda latest: Wish(wish.base, wish.changes))
+    def _request(self, request: Request) -> None:
+        """Request this; the controls follow, since the user has touched none."""
+        self._runner.change(lambda latest: Request(request.base, request.changes))
 
     # ── From one visit to the next ──
 
     def restore(self, state: State | None) -> None:
-        """Go on where this browser was at its last visit; None: it does not tell.
+        """Go on where this browser was at its last visit; None: the browser told nothing.
 
         Look, presets and runs are there again in any case; parameters and baseline unless the explorer was started with
         something else, or the user is at work already.
@@ -337,14 +336,6 @@ class Desk:
             return
         if state.baseline is not None and self._baseline is None:
             self._set_baseline(self._runs.find(state.baseline.config) or state.baseline)
-        if state.wish is not None and not same(state.wish, latest):
-            self._wish(state.wish)
+        if state.request is not None and not same(state.request, latest):
+            self._request(state.request)
             self._window.say("Welcome back", "All parameters are as you left them. Undo leads back to the start.")
-
-    def _remember(self) -> None:
-        self._news_at = None
-        own = [self._presets[name] for name in self._own]
-        stored = state_text(self._started_with, self._changes.present, own, self._runs, self._baseline, self._dark)
-        if stored != self._stored:
-            self._stored = stored
-            self._helper.remember(stored)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
+from app.format.differences import figure_text
 from app.format.markup import page, words_html
-from app.tabs.comparison import cells, figure_text
+from app.tabs.comparison import cells
 from model.analysis.comfort import POWER_LIMIT, Comfort, ride_comfort
 from model.analysis.ride import Row
 from model.analysis.signals import CENTRE_OF_MASS, seat

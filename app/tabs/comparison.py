@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import html
-import math
 from collections.abc import Sequence
 
+from app.format.differences import NONE, change_text, row_texts
 from app.format.load_unit import heading
 from model.analysis.ride import AIR_TIME, LOAD_COEFFICIENT, LOAD_PEAK, LOAD_RMS, TRAVEL, Row
 
@@ -15,7 +15,6 @@ PAIRS = (
     (LOAD_COEFFICIENT,),
 )  # figures of each wheel side by side in one table
 NOTABLE = 0.5  # %: a smaller change is not coloured
-NONE = "–"
 
 
 def comparison_table(rows: Sequence[Row], compared: bool) -> str:
@@ -58,27 +57,3 @@ def cells(row: Row | None, compared: bool) -> list[str]:
         return [f"<td>{now}</td>"]
     sign = "" if change is None or abs(change) < NOTABLE else "more" if change > 0 else "less"
     return [f"<td>{now}</td>", f"<td>{baseline}</td>", f'<td class="{sign}">{change_text(change)}</td>']
-
-
-def row_texts(row: Row) -> tuple[str, str]:
-    """Now and baseline."""
-    return figure_text(row.now, row.resolution), figure_text(row.baseline, row.resolution)
-
-
-def figure_text(value: float | None, resolution: float = 0.0) -> str:
-    """Three digits that count, as people write them: 0.0912, 1.35, 18.7, 183; none finer than the resolution."""
-    if value is None:
-        return NONE
-    if value == 0:
-        return "0"
-    digits = max(2 - int(f"{abs(value):e}".partition("e")[2]), 0)
-    finest = 4 if resolution == 0 else max(math.ceil(-math.log10(resolution)), 0)
-    return f"{value:.{min(digits, finest, 4)}f}"
-
-
-def change_text(change: float | None) -> str:
-    """Percent with its sign: "+13 %", "−1.1 %"."""
-    if change is None:
-        return NONE
-    text = f"{change:+.0f}" if abs(change) >= 9.95 else f"{change:+.1f}"
-    return f"{'0' if float(text) == 0 else text.replace('-', '−')} %"

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from model.analysis.ride import contact_motion
+from model.dynamics.ground import losses, pressed, shear_energy
 from model.dynamics.suspension import dissipated_power, elastic
 from model.road.road import build_road
 from model.simulation.trajectory import Trajectory
@@ -68,9 +69,7 @@ def energy_balance(trajectory: Trajectory) -> EnergyBalance:
     """
     system, q, v = trajectory.system, trajectory.q, trajectory.v
     touch = contact_motion(system, build_road(trajectory.config), q, v)
-    depth = np.maximum(touch.depth, 0.0)
-    load, traction, xi = trajectory.normal_load, trajectory.traction, trajectory.tangential_displacement
-    xi_rate = -(system.k_t * xi + traction) / system.c_t  # eq. (7)
+    xi = trajectory.tangential_displacement
 
     turn = q[:, system.spring_i, 2] - q[:, system.spring_j, 2]
     turn_rate = v[:, system.spring_i, 2] - v[:, system.spring_j, 2]
@@ -78,13 +77,13 @@ def energy_balance(trajectory: Trajectory) -> EnergyBalance:
     kinetic = (inertia * v**2).sum(axis=(1, 2)) / 2
     gravity = q[:, :, 1] @ system.weight
     springs = elastic(system, turn).energy.sum(axis=1)
-    ground = (system.k_n / 3 * depth**3).sum(axis=1) + (system.k_t / 2 * xi**2).sum(axis=1)
+    ground = (pressed(system.ground, touch.depth).energy + shear_energy(system.ground, xi)).sum(axis=1)
 
     drive_power = _drive_power(trajectory)
     suspension_power = dissipated_power(system, turn, turn_rate).sum(axis=1)
-    pressed_out = (load - system.k_n * depth**2) * np.where(touch.depth > 0, touch.sinking, 0.0)
-    ground_power = pressed_out.sum(axis=1) + system.c_t * (xi_rate**2).sum(axis=1)
-    friction_power = -(traction * (touch.slip - xi_rate)).sum(axis=1)
+    load, traction = trajectory.normal_load, trajectory.traction
+    lost = losses(system.ground, touch.depth, touch.sinking, touch.slip, xi, load, traction)
+    ground_power, friction_power = lost.damping.sum(axis=1), lost.friction.sum(axis=1)
 
     dissipated = suspension_power + ground_power + friction_power
     stored = kinetic + gravity + springs + ground

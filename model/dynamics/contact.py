@@ -8,32 +8,36 @@ from __future__ import annotations
 import numpy as np
 
 from model.compiled import compiled, inlined
+from model.dynamics import ground
 from model.dynamics.lanes import CONSTANTS_SIZE, HEAD, LANES, SCRATCH_SIZE, STATE_SIZE, C, P, W, Y
 from model.road.nearest_point import FAR, approach, halley, nearest, quintic
 
-# Where the rows of a kind of wheel begin: x and what follows it, ξ, its part of scratch space, k_n and c_n
-ROAD, IMAGINARY = (Y.x_w, Y.xi_w, W.X_w, P.k_n_w), (Y.x_v, Y.xi_v, W.X_v, P.k_n_v)
+# Where the rows of a kind of wheel begin: x and what follows it, ξ, its part of scratch space, whether it is there
+ROAD, IMAGINARY = (Y.x_w, Y.xi_w, W.X_w, P.road), (Y.x_v, Y.xi_v, W.X_v, P.imaginary)
 NEAR = 1e-9  # m: a wheel's centre that is no higher above the road is searched for
 
 
+_force = inlined(ground.force)
+
+
 @inlined
-def _ground_force(lanes, k_n, c_n, n_x, n_y, d, v_x, v_y, omega, xi):
-    """Eq. (4)–(7) for a wheel whose centre is d from the ground: (f_n, f_t, ξ̇)."""
-    z = max(lanes.r - d, 0.0)
-    z_dot = -(v_x * n_x + v_y * n_y)
-    f_n = max(z * z * (k_n + c_n * z_dot), 0.0)  # eq. (4)
-    p_dot = v_x * n_y - v_y * n_x + lanes.r * omega
-    limit = lanes.mu * f_n
-    f_t = min(max(-(lanes.k_t * xi + lanes.c_t * p_dot), -limit), limit)  # eq. (5), (6)
-    return f_n, f_t, -(lanes.k_t * xi + f_t) / lanes.c_t  # eq. (7)
+def _press(lanes, i, n_x, n_y, d, y, dy, w, wheel):
+    """The ground's force on the wheel in lane i, whose centre is d from the ground along n: its normal load."""
+    X, XI, AT, _THERE = wheel
+    v_x, v_y, omega = y[i + X + 3 * LANES], y[i + X + 4 * LANES], y[i + X + 5 * LANES]
+    z_dot, p_dot = -(v_x * n_x + v_y * n_y), v_x * n_y - v_y * n_x + lanes.r * omega
+    f_n, f_t, xi_dot = _force(lanes.ground, lanes.r - d, z_dot, p_dot, y[i + XI])
+    w[i + AT + C.f_n], w[i + AT + C.f_t] = f_n, f_t
+    w[i + AT + C.F_x], w[i + AT + C.F_y] = f_n * n_x + f_t * n_y, f_n * n_y - f_t * n_x
+    dy[i + XI] = xi_dot
+    return f_n
 
 
 @inlined
 def _look_up(lanes, road, y, w, p, wheel):
     """What the road is like under one wheel of each chain of a block; `wheel` tells which: ROAD or IMAGINARY."""
-    X, _XI, AT, GROUND = wheel
+    X, _XI, AT, THERE = wheel
     for i in range(lanes.lanes):
-        there = p[GROUND + i] > 0.0  # not an empty lane
         (
             w[AT + C.X + i],
             w[AT + C.s + i],
@@ -45,13 +49,13 @@ def _look_up(lanes, road, y, w, p, wheel):
             w[AT + C.c_4 + i],
             w[AT + C.c_5 + i],
             w[AT + C.final + i],
-        ) = approach(road, y[X + i], y[X + LANES + i] if there else FAR)
+        ) = approach(road, y[X + i], y[X + LANES + i] if p[THERE + i] > 0.0 else FAR)
 
 
 @inlined
 def _touch(lanes, i, y, dy, w, p, wheel):
     """The ground's force on the wheel in lane i: (normal load, 1 where the contact point must be searched for)."""
-    X, XI, AT, GROUND = wheel
+    X, _XI, AT, _THERE = wheel
     x, s, height = w[i + AT + C.X], w[i + AT + C.s], y[i + X + LANES]
     h, h1, h2, h3 = quintic(
         w[i + AT + C.c_0],
@@ -69,30 +73,21 @@ def _touch(lanes, i, y, dy, w, p, wheel):
     d = np.sqrt(n_x * n_x + n_y * n_y)
     over_d = 1.0 / d
     n_x, n_y = n_x * over_d, n_y * over_d
-    v_x, v_y, omega = y[i + X + 3 * LANES], y[i + X + 4 * LANES], y[i + X + 5 * LANES]
-    k_n, c_n = touches * p[i + GROUND], touches * p[i + GROUND + LANES]
-    f_n, f_t, xi_dot = _ground_force(lanes, k_n, c_n, n_x, n_y, d, v_x, v_y, omega, y[i + XI])
-    w[i + AT + C.f_n], w[i + AT + C.f_t] = f_n, f_t
-    w[i + AT + C.F_x], w[i + AT + C.F_y] = f_n * n_x + f_t * n_y, f_n * n_y - f_t * n_x
+    # Until it is searched for, such a wheel is as far away as an empty lane
+    f_n = _press(lanes, i, n_x, n_y, d if found else FAR, y, dy, w, wheel)
     w[i + AT + C.final] = touches
-    dy[i + XI] = xi_dot
     return f_n, 1.0 - touches
 
 
 @inlined
 def _search(lanes, road, y, dy, w, wheel):
     """The same for those that `_touch` left out, one by one: the sum of their normal loads."""
-    X, XI, AT, _GROUND = wheel
+    X, _XI, AT, _THERE = wheel
     total = 0.0
     for i in range(lanes.lanes):
         if w[i + AT + C.final] == 0.0:
             _s, _h, n_x, n_y, d = nearest(road, y[i + X], y[i + X + LANES])
-            v_x, v_y, omega = y[i + X + 3 * LANES], y[i + X + 4 * LANES], y[i + X + 5 * LANES]
-            f_n, f_t, xi_dot = _ground_force(lanes, lanes.k_n, lanes.c_n, n_x, n_y, d, v_x, v_y, omega, y[i + XI])
-            w[i + AT + C.f_n], w[i + AT + C.f_t] = f_n, f_t
-            w[i + AT + C.F_x], w[i + AT + C.F_y] = f_n * n_x + f_t * n_y, f_n * n_y - f_t * n_x
-            dy[i + XI] = xi_dot
-            total += f_n
+            total += _press(lanes, i, n_x, n_y, d, y, dy, w, wheel)
     return total
 
 

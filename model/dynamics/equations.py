@@ -10,6 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from model.dynamics import ground
+from model.dynamics.suspension import added_torque
 from model.dynamics.vehicle import System
 from model.road.road import Road
 
@@ -50,31 +52,21 @@ def suspension_torques(system: System, q: np.ndarray, v: np.ndarray) -> np.ndarr
     Q_theta = np.zeros(len(q))
     for s in range(len(system.spring_i)):
         i, j = system.spring_i[s], system.spring_j[s]
-        # Eq. (1), and eq. (2) with its sign turned: τ = k (θ_i − θ_j) + c (θ̇_i − θ̇_j) + τ_0; beyond the paper, k
-        # stiffens by 1 + p (θ_i − θ_j)², and c differs by direction
         u, u_dot = q[i, 2] - q[j, 2], v[i, 2] - v[j, 2]
-        c = system.c_s[s] if u_dot >= 0.0 else system.c_rebound[s]
-        tau = system.k_s[s] * u * (1.0 + system.p[s] * u**2) + c * u_dot + system.tau_0[s]
+        k, c = system.k_s[s], system.c_s[s]
+        # Eq. (1), and eq. (2) with its sign turned: τ = k (θ_i − θ_j) + c (θ̇_i − θ̇_j) + τ_0; then beyond the paper
+        tau = k * u + c * u_dot + system.tau_0[s]
         if s < system.n:
-            tau += stop_torque(system, u, u_dot)
+            tau += added_torque(system.stops, k, c, system.p[s], system.c_rebound[s], u, u_dot)
         # Eq. (3): the arm between takes the difference of both torques
         Q_theta[j] += tau
         Q_theta[i] -= tau
     return Q_theta
 
 
-def stop_torque(system: System, u: float, u_dot: float) -> float:
-    """Of a road arm's bump and rebound stops at θ_i − θ_j = u, N m; not in the paper. A stop pushes, it never pulls."""
-    if u > system.bump:
-        return max(0.0, system.k_stop * (u - system.bump) + system.c_stop * u_dot)
-    if u < system.rebound:
-        return min(0.0, system.k_stop * (u - system.rebound) + system.c_stop * u_dot)
-    return 0.0
-
-
 def nearest_point(road: Road, centre: np.ndarray) -> np.ndarray:
     """The point of the profile nearest to a wheel's centre, by brute force: (2,)."""
-    from scipy.optimize import brentq  # which nobody else waits for
+    from scipy.optimize import brentq  # here, since SciPy takes long to load and only tests come here
 
     X, Y = centre
     reach = 1.5 * road.radius
@@ -114,14 +106,8 @@ def contact(
     z = system.r - d
     z_dot = -v_w[:2] @ n
     p_dot = v_w[:2] @ t + system.r * v_w[2]
-    # Eq. (4), cut at zero: the ground never pulls
-    f_n = max(0.0, system.k_n * z**2 + system.c_n * z**2 * z_dot) if z > 0.0 else 0.0
-    # Eq. (5) with the sign of a force on the wheel, ξ for the paper's x
-    f_stick = -(system.k_t * xi + system.c_t * p_dot)
-    # Eq. (6)
-    f_t = f_stick if abs(f_stick) <= system.mu * f_n else system.mu * f_n * np.sign(f_stick)
-    # Eq. (7) with the limited force
-    xi_dot = -(system.k_t * xi + f_t) / system.c_t
+    # Eq. (4)–(7)
+    f_n, f_t, xi_dot = ground.force(system.ground, z, z_dot, p_dot, xi)
     return n, t, f_n, f_t, xi_dot
 
 

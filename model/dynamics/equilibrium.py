@@ -10,6 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from model.dynamics.ground import depth, pressed
 from model.dynamics.suspension import elastic
 from model.dynamics.vehicle import System
 
@@ -49,18 +50,18 @@ def rest_pose(system: System) -> tuple[np.ndarray, np.ndarray]:
         G = np.column_stack([np.ones(B), E_x * cos - E_y * sin])
         bend = -(E_x * sin + E_y * cos)
         sink = np.where(touching, np.maximum(system.r - y, 0.0), 0.0)
-        force = weight - system.k_n * sink**2
-        turn = spring @ z
-        held = elastic(system, turn)
-        V = weight @ y + system.k_n / 3 * (sink**3).sum() + held.energy.sum()
+        under = pressed(system.ground, sink)
+        force = weight - under.force
+        held = elastic(system, spring @ z)
+        V = weight @ y + under.energy.sum() + held.energy.sum()
         gradient = force @ G + held.torque @ spring
-        hessian = (G.T * (2 * system.k_n * sink)) @ G + (spring.T * held.stiffness) @ spring
+        hessian = (G.T * under.stiffness) @ G + (spring.T * held.stiffness) @ spring
         hessian[1:, 1:] += np.diag(force @ bend)
         return float(V), gradient, hessian, sink
 
     # A few millimetres into the ground, or no wheel would feel it
     z = np.zeros(size)
-    z[0] = system.q_design[0, 1] - np.sqrt(weight.sum() / len(system.wheel) / system.k_n)
+    z[0] = system.q_design[0, 1] - depth(system.ground, weight.sum() / len(system.wheel))
     z, gradient, hessian, sink = _minimise(terms, z)
     worst = np.abs(gradient).max()
     if np.linalg.eigvalsh(hessian)[0] <= 0.0:
@@ -78,7 +79,7 @@ def rest_pose(system: System) -> tuple[np.ndarray, np.ndarray]:
             "At rest the hull or an arm would have turned right over: the suspension cannot carry "
             "the vehicle near its design pose. Stiffen the suspension or lower the preload of the imaginary wheels."
         )
-    return _poses(E, z[0], np.bincount(rotating, z[1:], B)), (system.k_n * sink**2)[system.wheel]
+    return _poses(E, z[0], np.bincount(rotating, z[1:], B)), pressed(system.ground, sink).force[system.wheel]
 
 
 Terms = Callable[[np.ndarray], tuple[float, np.ndarray, np.ndarray, np.ndarray]]

@@ -24,6 +24,7 @@ from typing import NamedTuple
 import numpy as np
 
 from model.compiled import compiled, inlined
+from model.dynamics import suspension
 from model.dynamics.contact import block, contact_forces
 from model.dynamics.lanes import INT_E, LANES, SCRATCH_SIZE, SPEED, C, P, W, Y
 
@@ -101,6 +102,9 @@ def _fold_arm(m, I, p_x, p_y, tip_x, tip_y, K_xx, K_xy, K_yy, b_x, b_y, F_y, tau
     )
 
 
+_added_torque = inlined(suspension.added_torque)
+
+
 @inlined
 def _torsion_bars(lanes, theta_c, omega_c, s, p, w):
     """Torque on the road arms of a block, eq. (1), and what progressive spring, rebound damping and stops add to it."""
@@ -110,12 +114,26 @@ def _torsion_bars(lanes, theta_c, omega_c, s, p, w):
     if not lanes.linear:
         for i in range(lanes.lanes):
             u, u_dot = theta_c - s[i + Y.theta_a], omega_c - s[i + Y.omega_a]
-            tau = p[i + P.k_s] * p[i + P.p] * u * u * u + (p[i + P.c_rebound] - p[i + P.c_s]) * min(u_dot, 0.0)
-            if u > lanes.bump:
-                tau += max(0.0, lanes.k_stop * (u - lanes.bump) + lanes.c_stop * u_dot)
-            elif u < lanes.rebound:
-                tau += min(0.0, lanes.k_stop * (u - lanes.rebound) + lanes.c_stop * u_dot)
-            w[i + W.tau_a] += tau * p[i + P.road]
+            k, c, c_rebound = p[i + P.k_s], p[i + P.c_s], p[i + P.c_rebound]
+            w[i + W.tau_a] += _added_torque(lanes.stops, k, c, p[i + P.p], c_rebound, u, u_dot) * p[i + P.road]
+
+
+@inlined
+def _turned(cos, sin, x, y):
+    """A(θ) of eq. (10) times a vector of the body's frame."""
+    return cos * x - sin * y, sin * x + cos * y
+
+
+@inlined
+def _joint(two_alpha, beta2, C_x, C_y, C_x_dot, C_y_dot, bend_x, bend_y):
+    """γ of one joint, eq. (14) with Baumgarte's terms, and how far the joint is apart: (γ_x, γ_y, max |C|).
+
+    C: eq. (10), the point on the first body minus that on the second. bend: −(C_q q̇)_q q̇, which is +θ̇² times the way to
+    the joint from the first body's centre, and −θ̇² times that from the second's.
+    """
+    gamma_x = bend_x - two_alpha * C_x_dot - beta2 * C_x
+    gamma_y = bend_y - two_alpha * C_y_dot - beta2 * C_y
+    return gamma_x, gamma_y, max(abs(C_x), abs(C_y))
 
 
 class Chassis(NamedTuple):
@@ -150,16 +168,14 @@ def _fold_chains(lanes, c, s, p, w):
         tau_c = -tau_a - (1.0 - on_arm) * tau_l
         tau_a -= on_arm * tau_l
 
-        # Imaginary wheel into imaginary arm; γ at the wheel's centre: first body the arm
+        # Imaginary arm – imaginary wheel
         cos, sin = cos_sin(theta_l)
-        p_x, p_y = cos * p[i + P.p_x_l] - sin * p[i + P.p_y_l], sin * p[i + P.p_x_l] + cos * p[i + P.p_y_l]
-        tip_x = cos * p[i + P.tip_x_l] - sin * p[i + P.tip_y_l]
-        tip_y = sin * p[i + P.tip_x_l] + cos * p[i + P.tip_y_l]
+        p_x, p_y = _turned(cos, sin, p[i + P.p_x_l], p[i + P.p_y_l])
+        tip_x, tip_y = _turned(cos, sin, p[i + P.tip_x_l], p[i + P.tip_y_l])
         C_x, C_y = x_l + tip_x - s[i + Y.x_v], y_l + tip_y - s[i + Y.y_v]
         C_x_dot, C_y_dot = v_x_l - omega_l * tip_y - s[i + Y.v_x_v], v_y_l + omega_l * tip_x - s[i + Y.v_y_v]
-        gamma_x = omega_l * omega_l * tip_x - two_alpha * C_x_dot - beta2 * C_x
-        gamma_y = omega_l * omega_l * tip_y - two_alpha * C_y_dot - beta2 * C_y
-        drift_l = max(abs(C_x), abs(C_y))
+        bend_x, bend_y = omega_l * omega_l * tip_x, omega_l * omega_l * tip_y
+        gamma_x, gamma_y, drift_l = _joint(two_alpha, beta2, C_x, C_y, C_x_dot, C_y_dot, bend_x, bend_y)
         m_v = p[i + P.m_v]
         b_x = m_v * gamma_x + w[i + W.F_x_v]
         b_y = m_v * gamma_y + w[i + W.F_y_v] - p[i + P.weight_v]
@@ -170,27 +186,25 @@ def _fold_chains(lanes, c, s, p, w):
         w[i + W.gamma_x_l], w[i + W.gamma_y_l] = gamma_x, gamma_y
         w[i + W.e_x_l], w[i + W.e_y_l], w[i + W.T_l] = e_x, e_y, T
 
-        # … onto the road wheel's centre; γ there: first body the wheel
+        # Road wheel – imaginary arm
         C_x, C_y = x_w - x_l - p_x, y_w - y_l - p_y
         C_x_dot, C_y_dot = v_x_w - v_x_l + omega_l * p_y, v_y_w - v_y_l - omega_l * p_x
-        gamma_x = -omega_l * omega_l * p_x - two_alpha * C_x_dot - beta2 * C_x
-        gamma_y = -omega_l * omega_l * p_y - two_alpha * C_y_dot - beta2 * C_y
-        drift_l = max(drift_l, max(abs(C_x), abs(C_y)))
+        bend_x, bend_y = -omega_l * omega_l * p_x, -omega_l * omega_l * p_y
+        gamma_x, gamma_y, apart = _joint(two_alpha, beta2, C_x, C_y, C_x_dot, C_y_dot, bend_x, bend_y)
+        drift_l = max(drift_l, apart)
         w[i + W.at_pivot_x_l], w[i + W.at_pivot_y_l] = gamma_x, gamma_y
         f_x += K_xx * gamma_x + K_xy * gamma_y + w[i + W.F_x_w]
         f_y += K_xy * gamma_x + K_yy * gamma_y + w[i + W.F_y_w] - p[i + P.weight_w]
         K_xx, K_yy = K_xx + p[i + P.m_w], K_yy + p[i + P.m_w]
 
-        # Road wheel into road arm; γ at the wheel's centre: first body the arm
+        # Road arm – road wheel
         cos, sin = cos_sin(theta_a)
-        p_x, p_y = cos * p[i + P.p_x_a] - sin * p[i + P.p_y_a], sin * p[i + P.p_x_a] + cos * p[i + P.p_y_a]
-        tip_x = cos * p[i + P.tip_x_a] - sin * p[i + P.tip_y_a]
-        tip_y = sin * p[i + P.tip_x_a] + cos * p[i + P.tip_y_a]
+        p_x, p_y = _turned(cos, sin, p[i + P.p_x_a], p[i + P.p_y_a])
+        tip_x, tip_y = _turned(cos, sin, p[i + P.tip_x_a], p[i + P.tip_y_a])
         C_x, C_y = x_a + tip_x - x_w, y_a + tip_y - y_w
         C_x_dot, C_y_dot = v_x_a - omega_a * tip_y - v_x_w, v_y_a + omega_a * tip_x - v_y_w
-        gamma_x = omega_a * omega_a * tip_x - two_alpha * C_x_dot - beta2 * C_x
-        gamma_y = omega_a * omega_a * tip_y - two_alpha * C_y_dot - beta2 * C_y
-        drift_a = max(abs(C_x), abs(C_y))
+        bend_x, bend_y = omega_a * omega_a * tip_x, omega_a * omega_a * tip_y
+        gamma_x, gamma_y, drift_a = _joint(two_alpha, beta2, C_x, C_y, C_x_dot, C_y_dot, bend_x, bend_y)
         b_x = K_xx * gamma_x + K_xy * gamma_y + f_x
         b_y = K_xy * gamma_x + K_yy * gamma_y + f_y
         K_xx, K_xy, K_yy, f_x, f_y, e_x, e_y, T = _fold_arm(
@@ -200,14 +214,15 @@ def _fold_chains(lanes, c, s, p, w):
         w[i + W.gamma_x_a], w[i + W.gamma_y_a] = gamma_x, gamma_y
         w[i + W.e_x_a], w[i + W.e_y_a], w[i + W.T_a] = e_x, e_y, T
 
-        # … onto the chassis; γ at the pivot: first body the chassis
-        c_x, c_y = c.cos * p[i + P.c_x] - c.sin * p[i + P.c_y], c.sin * p[i + P.c_x] + c.cos * p[i + P.c_y]
+        # Chassis – road arm
+        c_x, c_y = _turned(c.cos, c.sin, p[i + P.c_x], p[i + P.c_y])
         C_x, C_y = c.x + c_x - x_a - p_x, c.y + c_y - y_a - p_y
         C_x_dot = c.v_x - c.omega * c_y - v_x_a + omega_a * p_y
         C_y_dot = c.v_y + c.omega * c_x - v_y_a - omega_a * p_x
-        gamma_x = c.omega * c.omega * c_x - omega_a * omega_a * p_x - two_alpha * C_x_dot - beta2 * C_x
-        gamma_y = c.omega * c.omega * c_y - omega_a * omega_a * p_y - two_alpha * C_y_dot - beta2 * C_y
-        drift_a = max(drift_a, max(abs(C_x), abs(C_y)))
+        bend_x = c.omega * c.omega * c_x - omega_a * omega_a * p_x
+        bend_y = c.omega * c.omega * c_y - omega_a * omega_a * p_y
+        gamma_x, gamma_y, apart = _joint(two_alpha, beta2, C_x, C_y, C_x_dot, C_y_dot, bend_x, bend_y)
+        drift_a = max(drift_a, apart)
         w[i + W.at_pivot_x_a], w[i + W.at_pivot_y_a], w[i + W.c_x], w[i + W.c_y] = gamma_x, gamma_y, c_x, c_y
         w[i + W.drift] = max(drift_a * p[i + P.road], drift_l * p[i + P.imaginary])
 

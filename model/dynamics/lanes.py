@@ -16,7 +16,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from model.dynamics.vehicle import System
+from model.dynamics.ground import Ground
+from model.dynamics.vehicle import Stops, System
 
 LANES = 8
 AT_ONCE = 4  # lanes are used by so many
@@ -37,7 +38,6 @@ CONSTANTS = (
     *("p_x_a", "p_y_a", "tip_x_a", "tip_y_a"),  # the arm's pivot and the wheel's centre in the arm's frame
     *("p_x_l", "p_y_l", "tip_x_l", "tip_y_l"),  # the same of the imaginary arm
     *("road", "imaginary"),  # 1 where there is a road arm and wheel, an imaginary arm and wheel; else 0
-    *("k_n_w", "c_n_w", "k_n_v", "c_n_v"),  # ground under road and imaginary wheel
 )
 CONTACT = (  # of a wheel
     *("X", "s", "u", "c_0", "c_1", "c_2", "c_3", "c_4", "c_5", "final"),  # what `approach` gives; then 1 if it sufficed
@@ -75,16 +75,9 @@ class Lanes(NamedTuple):
     I_c: float
     weight_c: float
     linear: bool
-    bump: float
-    rebound: float
-    k_stop: float
-    c_stop: float
+    stops: Stops
     r: float
-    k_n: float
-    c_n: float
-    k_t: float
-    c_t: float
-    mu: float
+    ground: Ground
     prescribed: bool
     x_0: float
     v_ref: float
@@ -183,8 +176,6 @@ def in_lanes(system: System) -> Lanes:
     groups = (system.road_arms, system.road_wheels, system.imaginary_arms, system.imaginary_wheels)
     for body, group in zip(BODIES, groups, strict=True):
         values[f"m_{body}"], values[f"weight_{body}"] = system.mass[group], system.weight[group]
-    for body, count in (("w", n), ("v", m)):
-        values[f"k_n_{body}"], values[f"c_n_{body}"] = np.full(count, system.k_n), np.full(count, system.c_n)
     points = {
         "c_{}": system.u_i[:n],
         "p_{}_a": system.u_j[:n],
@@ -213,17 +204,10 @@ def in_lanes(system: System) -> Lanes:
         m_c=float(system.mass[0]),
         I_c=float(system.inertia[0]),
         weight_c=float(system.weight[0]),
-        linear=bool(system.linear),
-        bump=system.bump,
-        rebound=system.rebound,
-        k_stop=system.k_stop,
-        c_stop=system.c_stop,
+        linear=system.linear,
+        stops=system.stops,
         r=system.r,
-        k_n=system.k_n,
-        c_n=system.c_n,
-        k_t=system.k_t,
-        c_t=system.c_t,
-        mu=system.mu,
+        ground=system.ground,
         prescribed=system.prescribed,
         x_0=system.x_0,
         v_ref=system.v_ref,

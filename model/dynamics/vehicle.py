@@ -10,8 +10,18 @@ from typing import NamedTuple
 import numpy as np
 
 from model.config.config import Config
+from model.dynamics.ground import Ground
 
 GRAVITY = 9.81  # m/s², along −y
+
+
+class Stops(NamedTuple):
+    """Where a road arm is stopped, as θ_i − θ_j, and how hard."""
+
+    bump: float  # rad; infinite without a stop
+    rebound: float  # rad, negative
+    k: float  # N m/rad, of both
+    c: float  # N m s/rad
 
 
 class System(NamedTuple):
@@ -34,21 +44,14 @@ class System(NamedTuple):
     spring_j: np.ndarray  # (S,) arm that takes +τ; road arms 1…n, then imaginary arms 1…m
     k_s: np.ndarray  # (S,) torsional stiffness, N m/rad (k_sl for imaginary arms)
     c_s: np.ndarray  # (S,) torsional damping, N m s/rad
-    linear: bool  # the paper's springs: what follows up to c_stop changes nothing
+    linear: bool  # the paper's springs: progression, rebound damping and stops change nothing
     p: np.ndarray  # (S,) progression, 1/rad²
     c_rebound: np.ndarray  # (S,) torsional damping while θ_i − θ_j falls (the wheel moves down in the hull), N m s/rad
-    bump: float  # θ_i − θ_j at which a road arm meets its bump stop, rad; infinite without one
-    rebound: float  # the same for the rebound stop, negative
-    k_stop: float  # N m/rad, of both stops
-    c_stop: float  # N m s/rad
+    stops: Stops  # of the road arms
     tau_0: np.ndarray  # (S,) preload torque, N m
     wheel: np.ndarray  # (W,) body of each wheel
     r: float  # wheel radius, m
-    k_n: float  # N/m²
-    c_n: float  # N s/m³
-    k_t: float  # N/m
-    c_t: float  # N s/m
-    mu: float
+    ground: Ground
     prescribed: bool  # drive by the rheonomic constraint instead of torques
     x_0: float  # m, where the prescribed drive is at t = 0
     v_ref: float  # m/s
@@ -155,21 +158,20 @@ def build_system(config: Config) -> System:
         spring_j=np.concatenate([arms, links]),
         k_s=np.concatenate([k_s, k_sl]),
         c_s=np.concatenate([c_s, c_sl]),
-        linear=road.progression == 0.0 and road.rebound_ratio == 1.0 and np.isinf(bump) and np.isinf(rebound),
+        linear=road.progression == 0.0 and road.rebound_ratio == 1.0 and bump == np.inf and rebound == -np.inf,
         p=np.concatenate([np.full(n, road.progression * at_wheel), np.zeros(m)]),
         c_rebound=np.concatenate([c_s * road.rebound_ratio, c_sl]),
-        bump=bump,
-        rebound=rebound,
-        k_stop=road.stop_stiffness * at_wheel,
-        c_stop=road.stop_damping * at_wheel,
+        stops=Stops(bump, rebound, road.stop_stiffness * at_wheel, road.stop_damping * at_wheel),
         tau_0=np.concatenate([tau_0, tau_l]),
         wheel=np.concatenate([wheels, imaginary]),
         r=r,
-        k_n=contact.normal_stiffness,
-        c_n=contact.normal_damping,
-        k_t=contact.tangential_stiffness,
-        c_t=contact.tangential_damping,
-        mu=contact.friction,
+        ground=Ground(
+            k_n=contact.normal_stiffness,
+            c_n=contact.normal_damping,
+            k_t=contact.tangential_stiffness,
+            c_t=contact.tangential_damping,
+            mu=contact.friction,
+        ),
         prescribed=drive.mode == "prescribed",
         x_0=0.0,
         v_ref=drive.speed_kmh / 3.6,

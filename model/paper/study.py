@@ -189,7 +189,7 @@ def figures_of(run: Trajectory, frequency: float) -> Figures:
         traction_share=float(traction[:, n:].sum() / traction.sum()),
         load_peak=float(load.max()),
         air=float((load[:, :n] <= 0).mean(axis=0).max()),
-        slipping=float(((traction >= SLIPPING * system.mu * load) & (load > 0)).mean(axis=0).max()),
+        slipping=float(((traction >= SLIPPING * system.ground.mu * load) & (load > 0)).mean(axis=0).max()),
         speed_swing=float(3.6 * np.abs(run.v[last, system.chassis, 0] - system.v_ref).max()),
         static_share=float(rest[n:].sum() / rest.sum()),
         static_road_load=float(rest[:n].mean()),

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from model.road.nearest_point import RoadTable
-from model.road.profile import distinct
+from model.road.profile import distinct, rising, weighted
 from model.road.road import Derivatives, Piece, Profile, Road
 from model.road.table import SAME
 
@@ -78,12 +78,7 @@ class Shape:
 
     def weight(self, x: np.ndarray) -> Derivatives:
         """0 before the start, 1 from BLEND behind it on, with two continuous derivatives."""
-        u = np.clip((x - self.start) / BLEND, 0.0, 1.0)
-        return (
-            u**3 * (10 - 15 * u + 6 * u**2),
-            30 * u**2 * (1 - u) ** 2 / BLEND,
-            60 * u * (1 - u) * (1 - 2 * u) / BLEND**2,
-        )
+        return rising((x - self.start) / BLEND, BLEND)
 
     def moved(self, by: float) -> Shape:
         """The same in a frame whose origin lies `by` further along, m."""
@@ -140,10 +135,10 @@ class Shapes:
             if not here.any():
                 continue
             own, at = x[here], np.flatnonzero(here)
-            w, w1, w2 = shape.weight(own)
             old = h[at], h1[at], h2[at]
             g, g1, g2 = (new - before for new, before in zip(shape.derivatives(own), old, strict=True))
-            h[at], h1[at], h2[at] = old[0] + w * g, old[1] + w * g1 + w1 * g, old[2] + w * g2 + 2 * w1 * g1 + w2 * g
+            added = weighted(shape.weight(own), (g, g1, g2))
+            h[at], h1[at], h2[at] = (before + more for before, more in zip(old, added, strict=True))
         return h, h1, h2
 
     def laid(self, low: float, high: float) -> Profile:

@@ -53,6 +53,24 @@ def spline(nodes: np.ndarray, h: np.ndarray, h1: np.ndarray, h2: np.ndarray) -> 
     return Piece(nodes, derivatives)
 
 
+def rising(u: np.ndarray, length: float) -> Derivatives:
+    """A weight that grows from 0 at u = 0 to 1 at u = 1 with two continuous derivatives, and these per m.
+
+    length: of the stretch that u runs over, m. Beyond its ends the weight stays.
+    """
+    u = np.clip(u, 0.0, 1.0)
+    return (
+        u**3 * (10 - 15 * u + 6 * u**2),
+        30 * u**2 * (1 - u) ** 2 / length,
+        60 * u * (1 - u) * (1 - 2 * u) / length**2,
+    )
+
+
+def weighted(w: Derivatives, h: Derivatives) -> Derivatives:
+    """The product of a weight and a height, with its derivatives."""
+    return w[0] * h[0], w[0] * h[1] + w[1] * h[0], w[0] * h[2] + 2 * w[1] * h[1] + w[2] * h[0]
+
+
 def distinct(x: np.ndarray) -> np.ndarray:
     """Rising, without those that are the same."""
     x = np.unique(x)

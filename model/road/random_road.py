@@ -17,7 +17,7 @@ from __future__ import annotations
 import numpy as np
 
 from model.config.config import RandomRoad
-from model.road.profile import Derivatives, Profile, spline
+from model.road.profile import Derivatives, Profile, rising, spline, weighted
 
 CLASSES = "ABCDEFGH"
 CLASS_A = 16e-6  # G_d(n_0), m³
@@ -61,9 +61,7 @@ def random_profile(road: RandomRoad, start: float, radius: float) -> Profile:
 
     # What would come before the first repetition, times a weight that rises from 0 to 1
     u = (nodes[first:] - nodes[first]) / run_in
-    w, w1, w2 = u**3 * (10 - 15 * u + 6 * u**2), 30 * u**2 * (1 - u) ** 2, 60 * u * (1 - u) * (1 - 2 * u)
-    w1, w2 = w1 / run_in, w2 / run_in**2
-    g, g1, g2 = (values[first:] for values in once)
-    risen = (w * g, w * g1 + w1 * g, w * g2 + 2 * w1 * g1 + w2 * g)
+    h, h1, h2 = (values[first:] for values in once)
+    risen = weighted(rising(u, run_in), (h, h1, h2))
     steady = start + run_in
     return Profile([spline(start + run_in * u, *risen), spline(steady + nodes, *once)], road.length)

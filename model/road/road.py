@@ -1,9 +1,9 @@
 """Road profiles y = h(x), and the point of a profile nearest to a wheel's centre (model.md, "Terrain").
 
 A road is a row of smooth pieces (model/road/profile.py), each a NumPy function with its first two derivatives. To add a
-road type, write one function that returns its pieces and name it in `profile_of`: contact, drawing and the compiled
-kernel follow from the pieces. Frame: x = 0 is the chassis's centre of mass at t = 0, y = 0 the flat ground before the
-road; m.
+road type, write one function in shapes.py that returns its pieces and name it in PLACED there: contact, drawing and the
+compiled kernel follow from the pieces. Frame: x = 0 is the chassis's centre of mass at t = 0, y = 0 the flat ground
+before the road; m.
 """
 
 from __future__ import annotations
@@ -107,22 +107,16 @@ def profile_of(road: configuration.Road, front_wheel: float, radius: float, reac
     """The profile of a configuration's road; front_wheel: x of its centre at t = 0, m; reach: see Road."""
     ahead = front_wheel + RAMP_AHEAD
     match road:
-        case configuration.FlatRoad():
-            return shapes.flat()
         case configuration.SineRoad():
             return shapes.sine(road, ahead if road.start is None else road.start)
-        case configuration.HalfRoundRoad():
-            return shapes.half_round(road)
-        case configuration.TrapezoidRoad():
-            return shapes.trapezoid(road)
-        case configuration.StepRoad():
-            return shapes.step(road)
         case configuration.RandomRoad():
             return _random(road, ahead, radius)
         case configuration.ProfileRoad():
             return _measured(road)
         case configuration.SumRoad():
             return shapes.total([profile_of(part, front_wheel, radius, reach) for part in road.parts], reach, FINEST)
+        case _:
+            return shapes.PLACED[type(road)](road)
 
 
 # A slider of the vehicle leaves these as they are.

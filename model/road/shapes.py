@@ -8,21 +8,23 @@ that is asked to be steeper than 85° runs at 85°: a step is a short ramp.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
 from model.config import config as configuration
 from model.config.parameters import STEEPEST
 from model.config.profile_points import points
-from model.road.profile import Derivatives, Piece, Profile, distinct, level, ramp, spline
+from model.road.profile import Derivatives, Piece, Profile, distinct, level, ramp, spline, weighted
 from model.road.table import SAME
 
 SHORTEST_RAMP = 1e-4  # m: over less, waves grow at once
 CELLS_PER_WAVE = 128  # a quintic of this length misses a sine by 1e-13 of its amplitude
 
 
-def flat() -> Profile:
+def flat(road: configuration.FlatRoad | None = None) -> Profile:
     return Profile([level(0.0, 1.0)])
 
 
@@ -38,9 +40,8 @@ def sine(road: configuration.SineRoad, x_s: float) -> Profile:
 
     def risen(x: np.ndarray) -> Derivatives:
         u = (x - x_s) / rise
-        w, w1, w2 = u**2 * (3 - 2 * u), 6 * u * (1 - u) / rise, (6 - 12 * u) / rise**2
-        h, h1, h2 = wave(x)
-        return w * h, w * h1 + w1 * h, w * h2 + 2 * w1 * h1 + w2 * h
+        w = u**2 * (3 - 2 * u), 6 * u * (1 - u) / rise, (6 - 12 * u) / rise**2
+        return weighted(w, wave(x))
 
     steady = Piece(x_s + rise + np.linspace(0.0, road.wavelength, CELLS_PER_WAVE + 1), wave)
     if rise == 0.0:
@@ -86,6 +87,15 @@ def step(road: configuration.StepRoad) -> Profile:
     """A ramp from the ground, its foot at the position, to a level that goes on."""
     length = max(road.ramp or 0.0, road.height / STEEPEST)
     return Profile([ramp(road.position, road.position + length, 0.0, road.height)])
+
+
+# Roads that stand where their configuration puts them, whatever the vehicle
+PLACED: dict[type, Callable[[Any], Profile]] = {
+    configuration.FlatRoad: flat,
+    configuration.HalfRoundRoad: half_round,
+    configuration.TrapezoidRoad: trapezoid,
+    configuration.StepRoad: step,
+}
 
 
 def measured(road: configuration.ProfileRoad) -> Profile:

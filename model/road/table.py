@@ -48,56 +48,16 @@ Row = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # x, h, h′, h″ 
 def tabulate(rows: list[Row], period: float, radius: float) -> RoadTable:
     """The table of adjoining rows of (x, h, h′, h″) at nodes; the last row repeats by the period, if there is one."""
     reach = REACH * radius
-    repeat_from = float(rows[-1][0][0])
-    if period > 0.0:
-        copies = int(np.ceil(2 * reach / period))
-        x, h, h1, h2 = rows[-1]
-        rows = rows + [(x + (copy + 1) * period, h, h1, h2) for copy in range(copies)]
-    first, last = rows[0], rows[-1]
-    level = max(2, int(np.ceil(2 * reach / radius * CELLS_PER_RADIUS)))
-    before = first[0][0] + np.linspace(-2 * reach, 0.0, level + 1)
-    behind = last[0][-1] + np.linspace(0.0, 2 * reach, level + 1)
-    rows = [_level(before, first[1][0]), *rows]
-    if period == 0.0:
-        rows.append(_level(behind, last[1][-1]))
-
-    start = np.concatenate([row[0][:-1] for row in rows])
-    size = np.concatenate([np.diff(row[0]) for row in rows])
-    coefficients = np.concatenate([quintics(np.diff(row[0]), row[1:]) for row in rows])
-    s_a, s_b = (np.concatenate([row[2][ends] for row in rows]) for ends in (slice(-1), slice(1, None)))
-    node = np.append(start, start[-1] + size[-1])
-    height = np.append(coefficients[:, 0], rows[-1][1][-1])
-    corner = np.zeros(len(node), dtype=np.bool_)
-    corner[1:-1] = np.abs(s_b[:-1] - s_a[1:]) > 1e-9 * (1 + np.abs(s_a[1:]))
-
-    # How far D can dip below its values at a cell's ends, from bounds on D″/2 = 1 + h′² + (h − Y) h″
-    steep = np.maximum(np.abs(s_a), np.abs(s_b))
-    hollow, crest = _curvature(coefficients, size)
-    steep += size * np.maximum(hollow, crest) / 2
-    near = size * steep
-    slack = size**2 / 4 * (1 + steep**2 + (reach + near) * np.maximum(hollow, crest))
-    slack_above = size**2 / 4 * (1 + steep**2 + np.maximum((radius + near) * crest, near * hollow))
-    bulge = size**2 / 8 * crest
-
-    width = max(float(np.median(size)), NARROWEST_BIN * radius)
-    bins = int(np.clip(np.ceil((node[-1] - node[0]) / width), 16, 1_000_000))
-    edges = np.linspace(node[0], node[-1], bins + 1)
-    first_cell = np.clip(np.searchsorted(node, edges[:-1], side="right") - 1, 0, len(size) - 1)
-    # A Halley step s leaves about s³ [(g″/2g′)² − g‴/6g′]
-    bend = np.maximum(hollow, crest)
-    third, fourth = np.abs(6 * coefficients[:, 3]), np.abs(24 * coefficients[:, 4])
-    wildness = (3 * steep * bend + radius * third) ** 2 / 4 + bend**2 / 2 + steep * third + radius * fourth / 6
-    last_step = np.clip(np.cbrt(FINAL_ERROR / np.maximum(wildness, 1e-12)), 1e-5, 2e-3)
-    convex = _convex_up_to(node, coefficients)
-    cells = Cells(node, height, coefficients, corner, bulge, slack_above, convex, last_step)
+    cells, slack = _cells(_with_ends(rows, period, radius), radius)
+    edges, first_cell = _bins(cells, radius)
     ceiling, floor = _judge_bins(edges, cells, radius)
     first_stretch, stretch = _find_stretches(edges, cells, ceiling, floor, radius)
 
-    cell = np.zeros((len(node), CELL_COLUMNS))
-    cell[:, NODE], cell[:, HEIGHT], cell[:-1, HEIGHT + 1 : NEXT] = node, height, coefficients[:, 1:]
+    cell = np.zeros((len(cells.node), CELL_COLUMNS))
+    cell[:, NODE], cell[:, HEIGHT], cell[:-1, HEIGHT + 1 : NEXT] = cells.node, cells.height, cells.coefficients[:, 1:]
     cell[:, NEXT] = np.inf  # of the last but one too: the first and last cells are level and reach on without end
-    cell[:-2, NEXT] = node[1:-1]
-    bin = np.zeros((bins, BIN_COLUMNS))
+    cell[:-2, NEXT] = cells.node[1:-1]
+    bin = np.zeros((len(first_cell), BIN_COLUMNS))
     bin[:, CEILING], bin[:, FLOOR] = ceiling, floor
     _guess_contacts(edges, cells, first_stretch, stretch, radius, bin)
     return RoadTable(
@@ -108,12 +68,68 @@ def tabulate(rows: list[Row], period: float, radius: float) -> RoadTable:
         first_stretch=first_stretch,
         stretch=stretch,
         bin_start=float(edges[0]),
-        bins_per_metre=bins / float(edges[-1] - edges[0]),
+        bins_per_metre=len(first_cell) / float(edges[-1] - edges[0]),
         radius=radius,
         reach=reach,
-        repeat_from=repeat_from,
+        repeat_from=float(rows[-1][0][0]),
         period=period,
     )
+
+
+def _with_ends(rows: list[Row], period: float, radius: float) -> list[Row]:
+    """The rows with what wheels at their ends may touch: level ground before and, unless they repeat, behind them."""
+    reach = REACH * radius
+    nodes = max(2, int(np.ceil(2 * reach / radius * CELLS_PER_RADIUS))) + 1
+    x, h, h1, h2 = rows[-1]
+    if period > 0.0:
+        copies = int(np.ceil(2 * reach / period))
+        behind = [(x + (copy + 1) * period, h, h1, h2) for copy in range(copies)]
+    else:
+        behind = [_level(x[-1] + np.linspace(0.0, 2 * reach, nodes), h[-1])]
+    first = rows[0]
+    return [_level(first[0][0] + np.linspace(-2 * reach, 0.0, nodes), first[1][0]), *rows, *behind]
+
+
+def _cells(rows: list[Row], radius: float) -> tuple[Cells, np.ndarray]:
+    """The cells of adjoining rows, and how far D can dip in each (C,) below its values at the ends, m²."""
+    start = np.concatenate([row[0][:-1] for row in rows])
+    size = np.concatenate([np.diff(row[0]) for row in rows])
+    coefficients = np.concatenate([quintics(np.diff(row[0]), row[1:]) for row in rows])
+    s_a, s_b = (np.concatenate([row[2][ends] for row in rows]) for ends in (slice(-1), slice(1, None)))
+    node = np.append(start, start[-1] + size[-1])
+    corner = np.zeros(len(node), dtype=np.bool_)
+    corner[1:-1] = np.abs(s_b[:-1] - s_a[1:]) > 1e-9 * (1 + np.abs(s_a[1:]))
+
+    # From bounds on D″/2 = 1 + h′² + (h − Y) h″
+    hollow, crest = _curvature(coefficients, size)
+    bend = np.maximum(hollow, crest)
+    steep = np.maximum(np.abs(s_a), np.abs(s_b)) + size * bend / 2
+    near = size * steep
+    slack = size**2 / 4 * (1 + steep**2 + (REACH * radius + near) * bend)
+    slack_above = size**2 / 4 * (1 + steep**2 + np.maximum((radius + near) * crest, near * hollow))
+
+    # A Halley step s leaves about s³ [(g″/2g′)² − g‴/6g′]
+    third, fourth = np.abs(6 * coefficients[:, 3]), np.abs(24 * coefficients[:, 4])
+    wildness = (3 * steep * bend + radius * third) ** 2 / 4 + bend**2 / 2 + steep * third + radius * fourth / 6
+    return Cells(
+        node=node,
+        height=np.append(coefficients[:, 0], rows[-1][1][-1]),
+        coefficients=coefficients,
+        corner=corner,
+        bulge=size**2 / 8 * crest,
+        slack=slack_above,
+        convex=_convex_up_to(node, coefficients),
+        last_step=np.clip(np.cbrt(FINAL_ERROR / np.maximum(wildness, 1e-12)), 1e-5, 2e-3),
+    ), slack
+
+
+def _bins(cells: Cells, radius: float) -> tuple[np.ndarray, np.ndarray]:
+    """Edges of the bins (bins + 1,), m, and the cell in which each begins (bins,)."""
+    node = cells.node
+    width = max(float(np.median(np.diff(node))), NARROWEST_BIN * radius)
+    bins = int(np.clip(np.ceil((node[-1] - node[0]) / width), 16, 1_000_000))
+    edges = np.linspace(node[0], node[-1], bins + 1)
+    return edges, np.clip(np.searchsorted(node, edges[:-1], side="right") - 1, 0, len(node) - 2)
 
 
 def tame_parts(row: Row, radius: float) -> np.ndarray:
@@ -304,16 +320,72 @@ def _height(coefficients, c, u):
     return quintic(k[0], k[1], k[2], k[3], k[4], k[5], u)
 
 
-# Element by element: arrays as wholes would cost seconds of compilation, for messages that are never shown
+class _Box(NamedTuple):
+    """The wheel centres of a bin: corners 0…3 and the middle of the box, and the node nearest to each."""
+
+    X: np.ndarray  # (5,) m
+    Y: np.ndarray  # (5,) m
+    nearest: np.ndarray  # (5,) node
+
+
+@inlined
+def _fill_box(box, left, right, low, high, cells, first, last):
+    """The box of a bin from left to right, of centres from low to high; nodes are those of cells first…last.
+
+    Element by element: arrays as wholes would cost seconds of compilation, for messages that are never shown.
+    """
+    X, Y = box.X, box.Y
+    X[0], X[1], X[2], X[3], X[4] = left, right, left, right, (left + right) / 2
+    Y[0], Y[1], Y[2], Y[3], Y[4] = low, low, high, high, (low + high) / 2
+    for i in range(5):
+        least = np.inf
+        for k in range(first, last + 2):
+            D = (cells.node[k] - X[i]) ** 2 + (cells.height[k] - Y[i]) ** 2
+            if D < least:
+                least, box.nearest[i] = D, k
+
+
+@inlined
+def _may_hold_nearest(cells, c, box):
+    """Whether cell c can hold the point nearest to some centre of the box: no node is nearer than all of the cell from
+    each of its corners.
+    """
+    for i in range(5):
+        node = box.nearest[i]
+        nearer = True
+        for k in range(4):
+            X, Y = box.X[k], box.Y[k]
+            D_a = (cells.node[c] - X) ** 2 + (cells.height[c] - Y) ** 2
+            D_b = (cells.node[c + 1] - X) ** 2 + (cells.height[c + 1] - Y) ** 2
+            D = (cells.node[node] - X) ** 2 + (cells.height[node] - Y) ** 2
+            if min(D_a, D_b) - cells.slack[c] <= D + 1e-9:
+                nearer = False
+                break
+        if nearer:
+            return False
+    return True
+
+
+@allocating
+def _with_room(stretch, found):
+    """The stretches (K, 2), with room for more than those found."""
+    if found < len(stretch):
+        return stretch
+    longer = np.empty((2 * found, 2), dtype=np.int64)
+    for k in range(found):
+        longer[k, 0], longer[k, 1] = stretch[k, 0], stretch[k, 1]
+    return longer
+
+
 @allocating
 def _find_stretches(edges, cells, ceiling, floor, radius):
     """For each bin with a floor, the stretches of cells that hold the nearest point for all centres of its box."""
-    node, height, slack = cells.node, cells.height, cells.slack
+    node = cells.node
     bins = len(edges) - 1
     first_stretch = np.zeros(bins + 1, dtype=np.int64)
     stretch = np.empty((64, 2), dtype=np.int64)
     found, first = 0, 0
-    X, Y, best = np.empty(5), np.empty(5), np.empty(5, dtype=np.int64)
+    box = _Box(np.empty(5), np.empty(5), np.empty(5, dtype=np.int64))
     for b in range(bins):
         first_stretch[b] = found
         while first < len(node) - 2 and node[first + 1] < edges[b] - radius:
@@ -323,41 +395,15 @@ def _find_stretches(edges, cells, ceiling, floor, radius):
         last = first
         while last < len(node) - 2 and node[last + 1] <= edges[b + 1] + radius:
             last += 1
-
-        # The nodes that are nearest to the box's corners and to its middle rule out what is further away
-        X[0], X[1], X[2], X[3], X[4] = edges[b], edges[b + 1], edges[b], edges[b + 1], (edges[b] + edges[b + 1]) / 2
-        Y[0], Y[1], Y[2], Y[3], Y[4] = floor[b], floor[b], ceiling[b], ceiling[b], (floor[b] + ceiling[b]) / 2
-        for i in range(5):
-            least = np.inf
-            for k in range(first, last + 2):
-                D = (node[k] - X[i]) ** 2 + (height[k] - Y[i]) ** 2
-                if D < least:
-                    least, best[i] = D, k
+        _fill_box(box, edges[b], edges[b + 1], floor[b], ceiling[b], cells, first, last)
         end = -2
         for c in range(first, last + 1):
-            possible = True
-            for i in range(5):
-                nearer = True
-                for k in range(4):
-                    D_a = (node[c] - X[k]) ** 2 + (height[c] - Y[k]) ** 2
-                    D_b = (node[c + 1] - X[k]) ** 2 + (height[c + 1] - Y[k]) ** 2
-                    D = (node[best[i]] - X[k]) ** 2 + (height[best[i]] - Y[k]) ** 2
-                    if min(D_a, D_b) - slack[c] <= D + 1e-9:
-                        nearer = False
-                        break
-                if nearer:
-                    possible = False
-                    break
-            if not possible:
+            if not _may_hold_nearest(cells, c, box):
                 continue
             if c == end + 1:
                 stretch[found - 1, 1] = c
             else:
-                if found == len(stretch):
-                    longer = np.empty((2 * found, 2), dtype=np.int64)
-                    for k in range(found):
-                        longer[k, 0], longer[k, 1] = stretch[k, 0], stretch[k, 1]
-                    stretch = longer
+                stretch = _with_room(stretch, found)
                 stretch[found, 0] = stretch[found, 1] = c
                 found += 1
             end = c

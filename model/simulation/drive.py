@@ -19,7 +19,7 @@ from model.road.endless import LaidRoad, Shapes
 from model.road.nearest_point import RoadTable
 from model.road.road import build_road
 from model.road.table import REACH
-from model.simulation.integrate import ADVICE, REASON, Integration, Samples, Status
+from model.simulation.integrate import Integration, Samples, Status
 from model.simulation.simulate import starting_state, warm_up
 from model.simulation.steppers import STEPS_PER_SECOND
 from model.simulation.trajectory import RunStatistics, Trajectory
@@ -57,19 +57,7 @@ class LiveDrive:
         self._past: deque[tuple[np.ndarray, Samples]] = deque()
         self._seconds = 0.0
         self._seen_to = -np.inf  # m: as far as the road can be seen
-        settings = config.simulation
-        self._run = Integration(
-            system,
-            self._lay(system, y),
-            y,
-            np.inf,
-            settings.output_rate,
-            settings.integrator,
-            settings.rtol,
-            settings.atol,
-            settings.step,
-            capacity=CAPACITY,
-        )
+        self._run = Integration.of(config.simulation, system, self._lay(system, y), y, np.inf, CAPACITY)
 
     @property
     def time(self) -> float:
@@ -168,10 +156,8 @@ class LiveDrive:
         past = [part for part in self._past if part[0][-1] >= since] or [self._past[-1]]
         t = np.concatenate([times for times, _ in past])
         samples = Samples._make(np.concatenate(parts) for parts in zip(*(kept for _, kept in past), strict=True))
-        status, advice = "complete", ""
-        if self.status is not Status.RUNNING:
-            status, advice = f"diverged at t = {self.time:.4g} s: {REASON[self.status]}", ADVICE[self.status]
         run = self._run
+        status, advice = ("complete", "") if run.status is Status.RUNNING else run.ending
         counts = RunStatistics(run.steps, run.rejected_steps, run.evaluations, run.smallest_step, self._seconds)
         return Trajectory(t, *samples, self._static_load, self.config, status, advice, counts)
 

@@ -9,28 +9,23 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from model.config.config import Simulation
 from model.dynamics.kernel import rates
 from model.dynamics.lanes import coordinates, in_lanes, make_work
 from model.dynamics.vehicle import System
 from model.road.nearest_point import RoadTable
 from model.simulation.steppers import (
     DORMAND_PRINCE,
-    EVALUATIONS,
-    FRESH,
-    NOW,
-    REJECTED,
-    SAMPLES,
-    SMALLEST,
-    STATUS,
-    STEPS,
+    STAGES,
     STEPS_PER_SECOND,
     STRETCHED,
-    TAKEN,
-    Clock,
+    Memory,
     Samples,
+    Span,
     Status,
     adaptive,
     error_scale,
+    make_clock,
     make_samples,
     record,
     runge_kutta_4,
@@ -42,6 +37,7 @@ if TYPE_CHECKING:
     from scipy.integrate import OdeSolver
 
 LONGEST_STEP = 0.02  # s
+FIRST_STEP = 1e-4  # s, to be tried
 STIFF_STEP = 1e-3  # s
 STIFFER = 1.05  # than at first, when wheels sink in more deeply
 SCIPY_STEPS_PER_CHUNK = 500  # so that a stop is heeded; normally these last for a second and more of simulated time
@@ -96,48 +92,77 @@ class Integration:
         self.duration, self.rate = duration, rate
         self.integrator, self.rtol, self.atol = integrator, rtol, atol
         self.samples = make_samples(system, capacity or int(np.floor(duration * rate + 1e-9)) + 1)
-        self.y = y.copy()
+        self._memory = Memory(y.copy(), np.zeros_like(y), np.zeros_like(y), np.zeros((STAGES, len(y))))
         self._work = make_work(system)
-        first_step = step if integrator == "rk4" else 1e-4
-        self._clock = Clock(np.array([0.0, first_step, 1e-4, np.inf]), np.zeros(7, dtype=np.int64))
+        self._clock = make_clock(step if integrator == "rk4" else FIRST_STEP)
         self._scale = error_scale(system, rtol, atol)
-        self._stages = np.zeros((7, len(y)))
-        self._spare = np.zeros((2, len(y)))
         self._stiffness = self._stiffest_rate()
 
-    t = property(lambda self: float(self._clock.time[NOW]), doc="Simulated time so far, s.")
-    status = property(lambda self: Status(int(self._clock.tally[STATUS])), doc="RUNNING until it ends.")
-    steps = property(lambda self: int(self._clock.tally[STEPS]), doc="Accepted steps.")
-    rejected_steps = property(
-        lambda self: int(self._clock.tally[REJECTED]), doc="Steps tried again with a shorter step."
-    )
-    evaluations = property(
-        lambda self: int(self._clock.tally[EVALUATIONS]), doc="Right-hand sides computed by the stepper."
-    )
-    samples_done = property(lambda self: int(self._clock.tally[SAMPLES]), doc="Samples that are filled.")
-    smallest_step = property(lambda self: float(self._clock.time[SMALLEST]), doc="Smallest accepted step, s.")
+    @property
+    def y(self) -> np.ndarray:
+        """The flat state now; not to be changed."""
+        return self._memory.y
+
+    t = property(lambda self: float(self._clock.t), doc="Simulated time so far, s.")
+    status = property(lambda self: Status(int(self._clock.status)), doc="RUNNING until it ends.")
+    steps = property(lambda self: int(self._clock.steps), doc="Accepted steps.")
+    rejected_steps = property(lambda self: int(self._clock.rejected), doc="Steps tried again with a shorter step.")
+    evaluations = property(lambda self: int(self._clock.evaluations), doc="Right-hand sides computed by the stepper.")
+    samples_done = property(lambda self: int(self._clock.recorded), doc="Samples that are filled.")
+    smallest_step = property(lambda self: float(self._clock.smallest), doc="Smallest accepted step, s.")
+
+    @classmethod
+    def of(
+        cls,
+        settings: Simulation,
+        system: System,
+        road: RoadTable,
+        y: np.ndarray,
+        duration: float,
+        capacity: int | None = None,
+    ) -> Integration:
+        """A run as the configuration wants it integrated."""
+        return cls(
+            system,
+            road,
+            y,
+            duration,
+            settings.output_rate,
+            settings.integrator,
+            settings.rtol,
+            settings.atol,
+            settings.step,
+            capacity,
+        )
+
+    @property
+    def ending(self) -> tuple[str, str]:
+        """For a result: "complete", "running" or how it diverged; and what to try then, else empty."""
+        if self.status in REASON:
+            return f"diverged at t = {self.t:.4g} s: {REASON[self.status]}", ADVICE[self.status]
+        return self.status.name.lower(), ""
 
     def change(self, system: System, road: RoadTable, y: np.ndarray | None = None) -> None:
         """Carry on with other forces, another road or another state, of the same bodies."""
         self.system, self.lanes, self.road = system, in_lanes(system), road
         if y is not None:
-            self.y = y.copy()
+            self.y[:] = y
         self._stiffness = self._stiffest_rate()
-        self._clock.tally[FRESH] = 0
+        self._clock.fresh = 0
 
     def take_samples(self) -> tuple[np.ndarray, Samples]:
         """Times (K,), s, and copies of the samples recorded since the last call, which makes room for more."""
-        first, end = int(self._clock.tally[TAKEN]), int(self._clock.tally[SAMPLES])
-        self._clock.tally[TAKEN] = end
+        first, end = int(self._clock.taken), int(self._clock.recorded)
+        self._clock.taken = end
         return np.arange(first, end) / self.rate, Samples._make(part[: end - first].copy() for part in self.samples)
 
     def give_up(self) -> None:
         """End a run that takes too many steps: an endless one sets no bound itself."""
-        self._clock.tally[STATUS] = Status.TOO_MANY_STEPS
+        self._clock.status = Status.TOO_MANY_STEPS
 
     def _stiffest_rate(self) -> float:
         """Largest −λ of the system linearised where it is now, 1/s."""
-        return stiffest_rate(self.lanes, self.road, self.t, self.y, self._work, self._stages, self._spare[0])
+        return stiffest_rate(self.lanes, self.road, self.t, self.y, self._work, self._memory.k, self._memory.between)
 
     def _longest(self) -> float:
         """No step runs past an obstacle, or leaves the stepper's stability (of a system that is stiffer than its steps
@@ -150,28 +175,12 @@ class Integration:
     def advance(self, t_stop: float) -> Status:
         """Carry on until t ≥ t_stop, the end, trouble, or 5000 steps; the GIL is free meanwhile."""
         t_stop = min(t_stop, self.duration)
-        common = (
-            self.lanes,
-            self.road,
-            self._work,
-            self.samples,
-            self._clock,
-            self.rate,
-            self.duration,
-            t_stop,
-        )
+        span = Span(float(self.rate), float(self.duration), float(t_stop), self._longest())
+        problem = self.lanes, self.road, self._work, self._memory
         if self.integrator in ADAPTIVE:
-            adaptive(
-                ADAPTIVE[self.integrator],
-                *common,
-                1.0 / self._scale,
-                self._longest(),
-                self._stages,
-                self.y,
-                *self._spare,
-            )
+            adaptive(ADAPTIVE[self.integrator], *problem, 1.0 / self._scale, self.samples, self._clock, span)
         elif self.integrator == "rk4":
-            runge_kutta_4(*common, self._stages, self.y, *self._spare)
+            runge_kutta_4(*problem, self.samples, self._clock, span)
         else:
             self._advance_scipy(t_stop)
         return self.status
@@ -180,8 +189,8 @@ class Integration:
         """Some steps of one of SciPy's solvers on the same right-hand side, for comparison."""
         from scipy import integrate  # half a second that no other stepper needs
 
-        time, count = self._clock
-        dy, place, state = self._stages[0], coordinates(self.system), np.zeros_like(self.y)
+        clock, dy = self._clock, self._memory.k[0]
+        place, state = coordinates(self.system), np.zeros_like(self.y)
 
         def whole(y: np.ndarray) -> np.ndarray:
             """The flat state with its empty lanes, which the solvers do not see: nothing depends on them."""
@@ -195,7 +204,7 @@ class Integration:
         try:
             solver = getattr(integrate, SCIPY_METHODS[self.integrator])(
                 right_hand_side,
-                float(time[NOW]),
+                self.t,
                 self.y[place],
                 t_stop,
                 rtol=max(self.rtol, 3e-14),
@@ -203,38 +212,38 @@ class Integration:
                 max_step=self._longest(),
             )
             for _ in range(SCIPY_STEPS_PER_CHUNK):
-                if solver.status != "running" or count[STATUS] != Status.RUNNING:
+                if solver.status != "running" or clock.status != Status.RUNNING:
                     break
                 before = solver.t
                 solver.step()
                 if solver.status == "failed":
-                    count[STATUS] = Status.SOLVER_FAILED
+                    clock.status = Status.SOLVER_FAILED
                     break
                 self._take_step(solver, before, whole)
-            count[EVALUATIONS] += solver.nfev
+            clock.evaluations += solver.nfev
         except (ValueError, IndexError, ArithmeticError):  # how they meet a state that is no longer finite
-            count[STATUS] = Status.SOLVER_FAILED
+            clock.status = Status.SOLVER_FAILED
 
     def _take_step(self, solver: OdeSolver, before: float, whole: Callable[[np.ndarray], np.ndarray]) -> None:
         """Book a step of a SciPy solver, from `before` to where it stands, and record the samples in it."""
-        time, count = self._clock
+        clock = self._clock
         found = trouble(self.lanes, whole(solver.y))
         if found:
-            count[STATUS] = found
+            clock.status = found
             return
-        room = count[TAKEN] + len(self.samples.residual)
-        if count[SAMPLES] < room and count[SAMPLES] / self.rate <= solver.t:
+        room = clock.taken + len(self.samples.residual)
+        if clock.recorded < room and clock.recorded / self.rate <= solver.t:
             within = solver.dense_output()
-            while count[SAMPLES] < room and count[SAMPLES] / self.rate <= solver.t:
-                t = count[SAMPLES] / self.rate
-                row = count[SAMPLES] - count[TAKEN]
-                record(self.lanes, self.road, t, whole(within(t)), self._stages[0], self._work, self.samples, row)
-                count[SAMPLES] += 1
-        time[NOW] = solver.t
-        self.y = whole(solver.y).copy()
-        count[STEPS] += 1
-        time[SMALLEST] = min(time[SMALLEST], solver.t - before)
+            while clock.recorded < room and clock.recorded / self.rate <= solver.t:
+                t = clock.recorded / self.rate
+                row = clock.recorded - clock.taken
+                record(self.lanes, self.road, t, whole(within(t)), self._memory.k[0], self._work, self.samples, row)
+                clock.recorded += 1
+        clock.t = solver.t
+        self.y[:] = whole(solver.y)
+        clock.steps += 1
+        clock.smallest = min(clock.smallest, solver.t - before)
         if solver.t >= self.duration:
-            count[STATUS] = Status.COMPLETE
-        elif count[STEPS] > self.duration * STEPS_PER_SECOND:
-            count[STATUS] = Status.TOO_MANY_STEPS
+            clock.status = Status.COMPLETE
+        elif clock.steps > self.duration * STEPS_PER_SECOND:
+            clock.status = Status.TOO_MANY_STEPS

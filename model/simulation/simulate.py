@@ -56,24 +56,14 @@ def simulate(
     Raises NoEquilibriumError when the vehicle has no rest pose to start from.
     """
     from model.road.road import SPARE, build_road
-    from model.simulation.integrate import ADVICE, REASON, Integration, Status
+    from model.simulation.integrate import Integration, Status
 
     warm_up(config.simulation.integrator)
     began = perf_counter()
     system, road = build_system(config), build_road(config)
     y, static_load = starting_state(system)
     settings = config.simulation
-    run = Integration(
-        system,
-        road.table,
-        y,
-        settings.duration,
-        settings.output_rate,
-        settings.integrator,
-        settings.rtol,
-        settings.atol,
-        settings.step,
-    )
+    run = Integration.of(settings, system, road.table, y, settings.duration)
     stopped = False
     while not stopped and run.advance(run.t + CHUNK) is Status.RUNNING:
         if on_progress is not None:
@@ -85,11 +75,7 @@ def simulate(
     if on_progress is not None and run.status is Status.COMPLETE:
         on_progress(1.0)
 
-    status, advice = "complete", ""
-    if run.status is Status.RUNNING:
-        status = "cancelled"
-    elif run.status is not Status.COMPLETE:
-        status, advice = f"diverged at t = {run.t:.4g} s: {REASON[run.status]}", ADVICE[run.status]
+    status, advice = ("cancelled", "") if run.status is Status.RUNNING else run.ending
     n = run.samples_done
     samples = run.samples
     return Trajectory(

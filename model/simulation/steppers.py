@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 from math import prod
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -66,15 +66,46 @@ def make_samples(system: System, count: int) -> Samples:
     return Samples._make(parts)
 
 
-NOW, STEP, LAST_ERROR, SMALLEST = range(4)  # entries of Clock.time
-STEPS, REJECTED, EVALUATIONS, SAMPLES, STATUS, TAKEN, FRESH = range(7)  # entries of Clock.tally
+CLOCK = np.dtype(
+    [
+        ("t", "f8"),  # simulated time so far, s
+        ("step", "f8"),  # proposed next, s
+        ("smallest", "f8"),  # accepted step so far, s
+        ("last_error", "f8"),  # of the last step, 1 is what is allowed
+        ("steps", "i8"),  # accepted
+        ("rejected", "i8"),  # tried again with a shorter step
+        ("evaluations", "i8"),  # of the right-hand side
+        ("recorded", "i8"),  # samples
+        ("taken", "i8"),  # of these, taken away to make room
+        ("status", "i8"),  # a Status
+        ("fresh", "i8"),  # 1 when the derivative at y is known
+    ]
+)
 
 
-class Clock(NamedTuple):
-    """What a stepper carries from step to step; the arrays are its own to change."""
+def make_clock(step: float) -> Any:
+    """What a stepper carries from step to step: a record of CLOCK's fields at t = 0. step: the first to be tried, s."""
+    clock = np.recarray(1, CLOCK)
+    clock[0] = (0.0, step, np.inf, 1e-4, 0, 0, 0, 0, 0, Status.RUNNING, 0)
+    return clock[0]
 
-    time: np.ndarray  # (4,) s: t, proposed step, smallest accepted step; and the last step's error
-    tally: np.ndarray  # (7,) counters; Status; samples recorded, and of these taken away; 1 when k[0] fits y
+
+class Memory(NamedTuple):
+    """A stepper's arrays, its own to change; `size` entries of the flat state."""
+
+    y: np.ndarray  # (size,) the state now
+    y_new: np.ndarray  # (size,) at the end of a step
+    between: np.ndarray  # (size,) at a stage or a sample
+    k: np.ndarray  # (STAGES, size) derivatives: k[0] at y, then of the stages
+
+
+class Span(NamedTuple):
+    """How far a stepper goes, s."""
+
+    rate: float  # samples a second
+    end: float  # of the run
+    stop: float  # of this call
+    longest: float  # step
 
 
 def error_scale(system: System, rtol: float, atol: float) -> np.ndarray:
@@ -242,152 +273,177 @@ STRETCHED = Tableau(
 )
 
 
-@compiled
-def adaptive(tableau, lanes, road, work, samples, clock, rate, t_end, t_stop, over_scale, longest, k, y, y_new, sample):
-    """Steps until t ≥ t_stop; k (7, size) holds the stages, k[0] the derivative at y (first same as last)."""
-    size, states = len(y), 6 * len(lanes.place) + len(lanes.xi_place) + 1  # the latter without empty lanes
-    time, count = clock.time, clock.tally
-    t, h, last_error = time[NOW], time[STEP], time[LAST_ERROR]
-    samples_count = len(samples.residual)
-    most_steps = count[STEPS] + count[REJECTED] + STEPS_PER_CHUNK
-    k1, k2, k3, k4, k5, k6, k7 = k[0], k[1], k[2], k[3], k[4], k[5], k[6]
-    last = tableau.stages - 1
-    k_last = k[last]
-    e1, e2, e3, e4, e5, e6, e7 = tableau.error
-    d1, _, d3, d4, d5, d6, d7 = tableau.dense  # k2 is lent to the samples
-    usual, after_rejection = 0.85 / tableau.order, 1.0 / tableau.order
-    if count[FRESH] == 0:
-        rates(lanes, road, t, y, k1, work)
-        count[EVALUATIONS] += 1
-        count[FRESH] = 1
-    rejected = False
-    while t < t_stop and count[STEPS] + count[REJECTED] < most_steps:
-        h = min(h, longest)
-        for stage in range(1, tableau.stages):
-            w1, w2, w3, w4, w5, w6 = tableau.stage[stage]
-            if stage == 1:
-                for i in range(size):
-                    y_new[i] = y[i] + h * (w1 * k1[i])
-            elif stage == 2:
-                for i in range(size):
-                    y_new[i] = y[i] + h * (w1 * k1[i] + w2 * k2[i])
-            elif stage == 3:
-                for i in range(size):
-                    y_new[i] = y[i] + h * (w1 * k1[i] + w2 * k2[i] + w3 * k3[i])
-            elif stage == 4:
-                for i in range(size):
-                    y_new[i] = y[i] + h * (w1 * k1[i] + w2 * k2[i] + w3 * k3[i] + w4 * k4[i])
-            elif stage == 5:
-                for i in range(size):
-                    y_new[i] = y[i] + h * (w1 * k1[i] + w2 * k2[i] + w3 * k3[i] + w4 * k4[i] + w5 * k5[i])
-            else:
-                for i in range(size):
-                    y_new[i] = y[i] + h * (w1 * k1[i] + w2 * k2[i] + w3 * k3[i] + w4 * k4[i] + w5 * k5[i] + w6 * k6[i])
-            rates(lanes, road, t + tableau.time[stage] * h, y_new, k[stage], work)
-        count[EVALUATIONS] += last
-        error = 0.0
+STAGES = 7  # rows of Memory.k
+SPARE = 1  # the row that is lent to samples: once a step is accepted, nothing needs it
+CUBIC = np.zeros(STAGES)  # nothing to add to cubic Hermite
+
+
+@inlined
+def _stage_state(weights, stage, h, memory):
+    """The state of a stage: y + h Σ w_j k_j over the stages before it. Written out, each needs one pass."""
+    size = len(memory.y)
+    y, out, k = memory.y, memory.y_new, memory.k
+    k1, k2, k3, k4, k5, k6 = k[0], k[1], k[2], k[3], k[4], k[5]
+    w1, w2, w3, w4, w5, w6 = weights
+    if stage == 1:
         for i in range(size):
-            e = e1 * k1[i] + e2 * k2[i] + e3 * k3[i] + e4 * k4[i] + e5 * k5[i] + e6 * k6[i] + e7 * k7[i]
-            square = (e * over_scale[i]) ** 2
-            error += square * square
-        error = h * np.sqrt(np.sqrt(error / states)) / liveliness(lanes, y)
+            out[i] = y[i] + h * (w1 * k1[i])
+    elif stage == 2:
+        for i in range(size):
+            out[i] = y[i] + h * (w1 * k1[i] + w2 * k2[i])
+    elif stage == 3:
+        for i in range(size):
+            out[i] = y[i] + h * (w1 * k1[i] + w2 * k2[i] + w3 * k3[i])
+    elif stage == 4:
+        for i in range(size):
+            out[i] = y[i] + h * (w1 * k1[i] + w2 * k2[i] + w3 * k3[i] + w4 * k4[i])
+    elif stage == 5:
+        for i in range(size):
+            out[i] = y[i] + h * (w1 * k1[i] + w2 * k2[i] + w3 * k3[i] + w4 * k4[i] + w5 * k5[i])
+    else:
+        for i in range(size):
+            out[i] = y[i] + h * (w1 * k1[i] + w2 * k2[i] + w3 * k3[i] + w4 * k4[i] + w5 * k5[i] + w6 * k6[i])
+
+
+@inlined
+def _error_of(weights, h, memory, over_scale, states):
+    """The estimated error of a step: the fourth root of the mean fourth power over all states; 1 is allowed."""
+    k = memory.k
+    k1, k2, k3, k4, k5, k6, k7 = k[0], k[1], k[2], k[3], k[4], k[5], k[6]
+    e1, e2, e3, e4, e5, e6, e7 = weights
+    total = 0.0
+    for i in range(len(memory.y)):
+        e = e1 * k1[i] + e2 * k2[i] + e3 * k3[i] + e4 * k4[i] + e5 * k5[i] + e6 * k6[i] + e7 * k7[i]
+        square = (e * over_scale[i]) ** 2
+        total += square * square
+    return h * np.sqrt(np.sqrt(total / states))
+
+
+@inlined
+def _state_within(dense, last, h, theta, memory):
+    """The state at t + θ h in the step from y to y_new: cubic Hermite, and what the tableau adds to it.
+
+    k[0] and k[last]: the derivatives at both ends.
+    """
+    size = len(memory.y)
+    y, y_new, out, k = memory.y, memory.y_new, memory.between, memory.k
+    first, final = k[0], k[last]
+    rest = 1.0 - theta
+    risen, begin, end = theta * theta * (3.0 - 2.0 * theta), h * theta * rest * rest, h * theta * theta * rest
+    for i in range(size):  # of few arrays at a time, so that it is done in lanes
+        out[i] = y[i] + risen * (y_new[i] - y[i]) + begin * first[i] - end * final[i]
+    d1, _, d3, d4, d5, d6, d7 = dense
+    if d1 != 0.0:
+        k3, k4, k5, k6, k7 = k[2], k[3], k[4], k[5], k[6]
+        for i in range(size):
+            out[i] += end * rest * (d1 * first[i] + d3 * k3[i] + d4 * k4[i] + d5 * k5[i] + d6 * k6[i] + d7 * k7[i])
+
+
+@inlined
+def _record_step(dense, last, lanes, road, work, memory, samples, clock, rate, t_new):
+    """Record the samples of the step from clock.t to t_new, as far as there is room."""
+    room = len(samples.residual) + clock.taken
+    h = t_new - clock.t
+    while clock.recorded < room and clock.recorded / rate <= t_new:
+        t = clock.recorded / rate
+        _state_within(dense, last, h, (t - clock.t) / h, memory)
+        record(lanes, road, t, memory.between, memory.k[SPARE], work, samples, clock.recorded - clock.taken)
+        clock.recorded += 1
+
+
+@inlined
+def _move_on(memory, last, clock, h, t_new):
+    """Take over the end of a step."""
+    for i in range(len(memory.y)):
+        memory.y[i], memory.k[0, i] = memory.y_new[i], memory.k[last, i]
+    clock.t = t_new
+    clock.steps += 1
+    clock.smallest = min(clock.smallest, h)
+
+
+@inlined
+def _begin(lanes, road, work, memory, clock):
+    """Make sure that k[0] is the derivative at y."""
+    if clock.fresh == 0:
+        rates(lanes, road, clock.t, memory.y, memory.k[0], work)
+        clock.evaluations += 1
+        clock.fresh = 1
+
+
+@compiled
+def adaptive(tableau, lanes, road, work, memory, over_scale, samples, clock, span):
+    """Steps of a Runge–Kutta pair until t ≥ span.stop, the run's end, trouble or STEPS_PER_CHUNK tries."""
+    states = 6 * len(lanes.place) + len(lanes.xi_place) + 1  # without empty lanes
+    last = tableau.stages - 1
+    usual, after_rejection = 0.85 / tableau.order, 1.0 / tableau.order
+    most_tries = clock.steps + clock.rejected + STEPS_PER_CHUNK
+    most_growth = 5.0
+    _begin(lanes, road, work, memory, clock)
+    while clock.t < span.stop and clock.steps + clock.rejected < most_tries:
+        h = min(clock.step, span.longest)
+        for stage in range(1, tableau.stages):
+            _stage_state(tableau.stage[stage], stage, h, memory)
+            rates(lanes, road, clock.t + tableau.time[stage] * h, memory.y_new, memory.k[stage], work)
+        clock.evaluations += last
+        error = _error_of(tableau.error, h, memory, over_scale, states) / liveliness(lanes, memory.y)
 
         if error <= 1.0:
-            count[STATUS] = trouble(lanes, y_new)
-            if count[STATUS] != Status.RUNNING.value:
+            clock.status = trouble(lanes, memory.y_new)
+            if clock.status != Status.RUNNING.value:
                 break
-            t_new = t + h
-            while count[SAMPLES] - count[TAKEN] < samples_count and count[SAMPLES] / rate <= t_new:
-                # Cubic Hermite, and what the tableau adds to it; of few arrays at a time, so that it is done in lanes
-                theta = (count[SAMPLES] / rate - t) / h
-                rest = 1.0 - theta
-                new, first, final = (
-                    theta * theta * (3.0 - 2.0 * theta),
-                    h * theta * rest * rest,
-                    h * theta * theta * rest,
-                )
-                for i in range(size):
-                    sample[i] = y[i] + new * (y_new[i] - y[i]) + first * k1[i] - final * k_last[i]
-                if d1 != 0.0:
-                    for i in range(size):
-                        sample[i] += (
-                            final * rest * (d1 * k1[i] + d3 * k3[i] + d4 * k4[i] + d5 * k5[i] + d6 * k6[i] + d7 * k7[i])
-                        )
-                record(lanes, road, count[SAMPLES] / rate, sample, k2, work, samples, count[SAMPLES] - count[TAKEN])
-                count[SAMPLES] += 1
-            t = t_new
-            for i in range(size):
-                y[i], k1[i] = y_new[i], k_last[i]
-            count[STEPS] += 1
-            time[SMALLEST] = min(time[SMALLEST], h)
+            t_new = clock.t + h
+            _record_step(tableau.dense, last, lanes, road, work, memory, samples, clock, span.rate, t_new)
+            _move_on(memory, last, clock, h, t_new)
             # Proportional-integral step control
-            factor = 0.9 * max(error, 1e-10) ** -usual * last_error**0.04
-            h *= min(max(factor, 0.2), 1.0 if rejected else 5.0)
-            last_error = max(error, 1e-4)
-            rejected = False
+            factor = 0.9 * max(error, 1e-10) ** -usual * clock.last_error**0.04
+            clock.step = h * min(max(factor, 0.2), most_growth)
+            clock.last_error = max(error, 1e-4)
+            most_growth = 5.0
         else:
-            count[REJECTED] += 1
-            rejected = True
-            h *= max(0.9 * error**-after_rejection, 0.2) if np.isfinite(error) else 0.2
+            clock.rejected += 1
+            most_growth = 1.0
+            clock.step = h * (max(0.9 * error**-after_rejection, 0.2) if np.isfinite(error) else 0.2)
             if not np.isfinite(error):
-                k[1:] = 0.0  # a stage's zero weights must not meet a NaN
-            if h < SMALLEST_STEP:
-                count[STATUS] = Status.STEP_TOO_SMALL.value if np.isfinite(error) else Status.NOT_FINITE.value
+                memory.k[1:] = 0.0  # a stage's zero weights must not meet a NaN
+            if clock.step < SMALLEST_STEP:
+                clock.status = Status.STEP_TOO_SMALL.value if np.isfinite(error) else Status.NOT_FINITE.value
                 break
-    if count[STATUS] == Status.RUNNING.value:
-        if t >= t_end:
-            count[STATUS] = Status.COMPLETE.value
-        elif count[STEPS] + count[REJECTED] > t_end * STEPS_PER_SECOND:
-            count[STATUS] = Status.TOO_MANY_STEPS.value
-    time[NOW], time[STEP], time[LAST_ERROR] = t, h, last_error
+    if clock.status == Status.RUNNING.value:
+        if clock.t >= span.end:
+            clock.status = Status.COMPLETE.value
+        elif clock.steps + clock.rejected > span.end * STEPS_PER_SECOND:
+            clock.status = Status.TOO_MANY_STEPS.value
 
 
 @compiled
-def runge_kutta_4(lanes, road, work, samples, clock, rate, t_end, t_stop, k, y, y_new, trial):
-    """The classic fixed-step method until t ≥ t_stop; cubic Hermite between steps. k (7, size): k[0] as above."""
-    size = len(y)
-    time, count = clock.time, clock.tally
-    t, h = time[NOW], time[STEP]
-    samples_count = len(samples.residual)
-    most_steps = count[STEPS] + STEPS_PER_CHUNK
+def runge_kutta_4(lanes, road, work, memory, samples, clock, span):
+    """Steps of the classic method, all equally long, until t ≥ span.stop, the run's end, trouble or STEPS_PER_CHUNK."""
+    size, h = len(memory.y), clock.step
+    y, y_new, between, k = memory.y, memory.y_new, memory.between, memory.k
     k1, k2, k3, k4 = k[0], k[1], k[2], k[3]
-    if count[FRESH] == 0:
-        rates(lanes, road, t, y, k1, work)
-        count[EVALUATIONS] += 1
-        count[FRESH] = 1
-    while t < t_stop and count[STEPS] < most_steps:
+    last = 4  # where the derivative at y_new stands
+    most_steps = clock.steps + STEPS_PER_CHUNK
+    _begin(lanes, road, work, memory, clock)
+    while clock.t < span.stop and clock.steps < most_steps:
+        t = clock.t
         for i in range(size):
-            trial[i] = y[i] + h / 2 * k1[i]
-        rates(lanes, road, t + h / 2, trial, k2, work)
+            between[i] = y[i] + h / 2 * k1[i]
+        rates(lanes, road, t + h / 2, between, k2, work)
         for i in range(size):
-            trial[i] = y[i] + h / 2 * k2[i]
-        rates(lanes, road, t + h / 2, trial, k3, work)
+            between[i] = y[i] + h / 2 * k2[i]
+        rates(lanes, road, t + h / 2, between, k3, work)
         for i in range(size):
-            trial[i] = y[i] + h * k3[i]
-        rates(lanes, road, t + h, trial, k4, work)
+            between[i] = y[i] + h * k3[i]
+        rates(lanes, road, t + h, between, k4, work)
         for i in range(size):
             y_new[i] = y[i] + h / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i])
-        count[STEPS] += 1
-        t_new = count[STEPS] * h
-        rates(lanes, road, t_new, y_new, k2, work)
-        count[EVALUATIONS] += 4
-        count[STATUS] = trouble(lanes, y_new)
-        if count[STATUS] != Status.RUNNING.value:
+        t_new = (clock.steps + 1) * h
+        rates(lanes, road, t_new, y_new, k[last], work)
+        clock.evaluations += 4
+        clock.status = trouble(lanes, y_new)
+        if clock.status != Status.RUNNING.value:
             break
-        while count[SAMPLES] - count[TAKEN] < samples_count and count[SAMPLES] / rate <= t_new:
-            theta = (count[SAMPLES] / rate - t) / h
-            for i in range(size):
-                rise = y_new[i] - y[i]
-                trial[i] = (
-                    y[i]
-                    + theta * rise
-                    + theta * (theta - 1) * ((1 - 2 * theta) * rise + h * ((theta - 1) * k1[i] + theta * k2[i]))
-                )
-            record(lanes, road, count[SAMPLES] / rate, trial, k3, work, samples, count[SAMPLES] - count[TAKEN])
-            count[SAMPLES] += 1
-        t = t_new
-        for i in range(size):
-            y[i], k1[i] = y_new[i], k2[i]
-    if count[STATUS] == Status.RUNNING.value and t >= t_end:
-        count[STATUS] = Status.COMPLETE.value
-    time[NOW], time[SMALLEST] = t, h
+        _record_step(CUBIC, last, lanes, road, work, memory, samples, clock, span.rate, t_new)
+        _move_on(memory, last, clock, h, t_new)
+    if clock.status == Status.RUNNING.value and clock.t >= span.end:
+        clock.status = Status.COMPLETE.value

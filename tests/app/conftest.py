@@ -43,6 +43,12 @@ def wait_for(condition: Callable[[], Any], what: str = "it") -> Any:
     raise AssertionError(f"waited {PATIENCE:g} s for {what}")
 
 
+def pass_frames(explorer: Explorer, count: int = 4) -> None:
+    """Until the view of the newest tab has been drawn so many times, or would have been."""
+    for _ in range(count):
+        explorer.sessions[-1].show_now(lambda: None)
+
+
 def trackride_threads() -> set[str]:
     """Names of the sessions' threads that are alive."""
     return {thread.name for thread in threading.enumerate() if thread.name.startswith("trackride")}
@@ -84,7 +90,7 @@ def simulate_at_once(
     return make_run(config)
 
 
-class FakeScene:
+class FakeView:
     """A 3-D view that remembers what it was told."""
 
     def __init__(self, client: viser.ClientHandle, dark: bool) -> None:
@@ -293,7 +299,7 @@ def explore() -> Iterator[Callable[..., Explorer]]:
     started: list[Explorer] = []
 
     def start(config: Config | None = None, preset: str = "paper", **session: Any) -> Explorer:
-        session = {"run": simulate_at_once, "make_scene": FakeScene} | session
+        session = {"run": simulate_at_once, "make_view": FakeView} | session
         started.append(Explorer(config or load_config("paper"), preset, port=0, **session))
         return started[-1]
 

@@ -109,7 +109,7 @@ def test_a_tab_that_cannot_be_set_up_is_told(explore: Any, open_tab: Any) -> Non
     def broken(client: Any, dark: bool) -> Any:
         raise RuntimeError("no scene")
 
-    tab: Tab = open_tab(explore(make_scene=broken))
+    tab: Tab = open_tab(explore(make_view=broken))
     wait_for(lambda: tab.notifications, "a notification")
     wait_for(lambda: not trackride_threads(), "the threads to end")
 

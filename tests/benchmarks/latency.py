@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import viser
 
-from app.runs.runner import Finished
+from app.runs.request import Finished
 from app.server import Explorer as Server
 from app.session.session import Session
 from app.session.window import Window
@@ -110,7 +110,7 @@ def measure() -> dict[str, tuple[float, str]]:
         watched(Window, "show_run", on_show),
         watched(viser.ClientHandle, "flush", on_flush),
     ):
-        server = Server(load_config("paper"), "paper", port=0, run=watch.run, make_scene=EmptyStage)
+        server = Server(load_config("paper"), "paper", port=0, run=watch.run, make_view=EmptyStage)
         try:
             explorer = Explorer(browser.new_page(viewport={"width": 1280, "height": 720}))
             explorer.open(f"{server.address}/?fixedDpr=0.5")

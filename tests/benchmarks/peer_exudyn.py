@@ -92,7 +92,7 @@ class ExudynPeer:
         task, s, mbs, item = self._task, self._task.system, self._mbs, self._exudyn.itemInterface
         corners = np.column_stack([task.x, task.h])[::-1]  # with the air on the right-hand side
         pieces = np.hstack([corners[:-1], corners[1:]])
-        z = np.sqrt(task.static_load.mean() / s.k_n)
+        z = np.sqrt(task.static_load.mean() / s.ground.k_n)
         length = 2 * np.sqrt(2 * s.r * z)
         initial = np.tile([-1.0, 0.0, 0.0], len(pieces))  # of each piece: the wheel on it, none yet; gap; sliding
         self._touching = mbs.AddNode(
@@ -105,8 +105,8 @@ class ExudynPeer:
                 nodeNumber=self._touching,
                 circlesRadii=[s.r] * len(wheels),
                 segmentsData=self._exudyn.MatrixContainer(pieces),
-                contactStiffness=s.k_n * z**2 / (2 / 3 * z * length),
-                contactDamping=s.c_n * z**2 / length,
+                contactStiffness=s.ground.k_n * z**2 / (2 / 3 * z * length),
+                contactDamping=s.ground.c_n * z**2 / length,
                 contactModel=1,
             )
         )

@@ -74,9 +74,9 @@ class MujocoPeer:
             d, d_1 = 2 * IMPEDANCE, 5 * IMPEDANCE  # at z_0, at 4 z_0
             D = d / ((1 - d) * mobility) * TOUCHED
             geom.solimp = d_1 / 5, d_1, 4 * z_0, 0.5, 1
-            geom.solref = -s.k_n * z_0 / D * d_1**2 / d, -s.c_n * z_0**2 / D * d_1
+            geom.solref = -s.ground.k_n * z_0 / D * d_1**2 / d, -s.ground.c_n * z_0**2 / D * d_1
         # Sliding is damped impratio times as much as sinking in: at the static load as our ground damps it
-        model.opt.impratio = s.c_t / np.mean(s.c_n * self._task.sinking**2)
+        model.opt.impratio = s.ground.c_t / np.mean(s.ground.c_n * self._task.sinking**2)
 
 
 def _tree(s: System) -> tuple[dict[int, int], dict[int, tuple[np.ndarray, np.ndarray]]]:
@@ -133,7 +133,8 @@ def _model_text(task: Task, parent: dict[int, int], pins: dict[int, tuple[np.nda
             turn.attrib |= {"stiffness": _text(s.k_s[k]), "damping": _text(s.c_s[k])}
             turn.set("springref", _text(s.tau_0[k] / s.k_s[k]))
     for b in s.wheel.tolist():
-        wheel = SubElement(bodies[b], "geom", name=f"wheel {b}", type="sphere", size=_text(s.r), friction=_text(s.mu))
+        size, friction = _text(s.r), _text(s.ground.mu)
+        wheel = SubElement(bodies[b], "geom", name=f"wheel {b}", type="sphere", size=size, friction=friction)
         wheel.attrib |= {"contype": "1", "conaffinity": "0", "condim": "3", "priority": "1"}
 
     SubElement(SubElement(root, "actuator"), "velocity", joint="hull 0", kv=_text(s.mass.sum() / PULL))

@@ -35,7 +35,7 @@ class Task(NamedTuple):
     @property
     def sinking(self) -> np.ndarray:
         """How deep the wheels stand in level ground at rest, (W,), m: there a peer's contact is made like ours."""
-        return np.sqrt(self.static_load / self.system.k_n)
+        return np.sqrt(self.static_load / self.system.ground.k_n)
 
 
 class Peer(Protocol):

@@ -9,7 +9,7 @@ from pathlib import Path
 from PIL import Image
 from playwright.sync_api import Download, expect
 
-from app.tabs.comparison import change_text, row_texts
+from app.format.differences import change_text, row_texts
 from model import load_config, simulate
 from model.analysis.ride import AIR_TIME, comparison
 from model.simulation.trajectory import Trajectory

@@ -9,6 +9,7 @@ import numpy as np
 
 from app.reports.paper.words import HARDLY, change_words, list_words, share_words
 from model.config.parameters import WHEEL_COUNT
+from model.dynamics.ground import depth
 from model.paper.study import PRELOAD, Figures, PaperStudy, reach
 
 Verdict = Literal["holds", "holds within limits", "does not hold here", "cannot be compared"]
@@ -108,8 +109,8 @@ def _wheels_relieved(study: PaperStudy) -> Finding:
     with_track, without = study.paper.figures, study.no_track
     less = with_track.static_road_load / without.static_road_load - 1
     peak = with_track.load_peak / without.load_peak - 1
-    stiffness = study.run.system.k_n
-    sunk, deeper = (1e3 * np.sqrt(f.static_road_load / stiffness) for f in (with_track, without))
+    ground = study.run.system.ground
+    sunk, deeper = (1e3 * depth(ground, f.static_road_load) for f in (with_track, without))
     verdict: Verdict = "does not hold here" if less >= 0 else "holds" if peak < 0 else "holds within limits"
     on_waves = "fall too" if peak < 0 else "do not fall"
     return Finding(

@@ -1,9 +1,8 @@
-"""Pictures and their names."""
+"""Pictures of the 3-D view."""
 
 from __future__ import annotations
 
 import io
-import re
 import time
 from types import SimpleNamespace
 from typing import Any
@@ -13,7 +12,7 @@ import pytest
 from PIL import Image
 
 import app.files.pictures
-from app.files.pictures import NAME_LIMIT, NoPictureError, file_name, framed, movie_frames, take_picture
+from app.files.pictures import NoPictureError, framed, movie_frames, take_picture
 from model.config.config import load_config
 from tests.app.conftest import Tab, trackride_threads, wait_for
 
@@ -74,31 +73,6 @@ def test_a_browser_that_does_not_answer_leads_to_a_message(error: Exception) -> 
         take_picture(FakeCamera(error), 40, 20, "white")
 
 
-def test_names_tell_preset_changes_and_content() -> None:
-    changes = {
-        "drive.speed_kmh": 22.5,
-        "road.amplitude": 0.15,
-        "vehicle.road_suspension.stiffness": 60000.0,
-        "road.type": "half_round",
-    }
-    name = file_name(PAPER, "Paper vehicle", changes, "1280x720", ".png")
-    assert name == (
-        "paper-vehicle_speed-22.5-km-h_amplitude-150-mm_road-stiffness-60-kn-m_road-type-half-round_1280x720.png"
-    )
-    torsion = {"vehicle.road_suspension.basis": "torsion", "vehicle.road_suspension.stiffness": 9000.0}
-    name = file_name(PAPER.replace(torsion), "Paper vehicle", torsion, "", ".yaml")
-    assert name == "paper-vehicle_road-rates-torsion_road-stiffness-9-kn-m-rad.yaml"
-
-
-def test_names_are_safe_and_short() -> None:
-    evil = "../../etc/passwd\0 <b>\u202e CON: *?|" * 20
-    name = file_name(PAPER, evil, {"vehicle.road_wheels.positions": tuple(range(20, 0, -1))}, "1280x720", ".png")
-    assert re.fullmatch(r"[a-z0-9][a-z0-9._-]*_1280x720\.png", name)
-    assert ".." not in name
-    assert len(name) <= NAME_LIMIT + len(".png")
-    assert file_name(PAPER, "日本", {}, "", ".png") == "run.png"
-
-
 def downloads(tab: Tab) -> list[dict[str, Any]]:
     return [message for message in tuple(tab.messages) if message["type"] == "FileTransferStartDownload"]
 
@@ -133,7 +107,7 @@ def test_a_hidden_tab_leads_to_a_message_and_the_next_picture_can_be_taken(
             lambda count=count: len([n for n in tab.notifications if n["title"] == "No picture"]) == count,
             "a message",
         )
-        wait_for(lambda: "trackride-errand" not in trackride_threads(), "the errand to end")
+        wait_for(lambda: "trackride-job" not in trackride_threads(), "the job to end")
     assert downloads(tab) == []
 
 
@@ -142,7 +116,7 @@ def test_a_tab_that_closes_during_a_picture_leaves_nothing_behind(explore: Any, 
     wait_for(lambda: tab.shows_run(1))
     tab.press("Screenshot")
     wait_for(lambda: [m for m in tuple(tab.messages) if m["type"] == "GetRenderRequestMessage"], "the request")
-    assert "trackride-errand" in trackride_threads()
+    assert "trackride-job" in trackride_threads()
     tab.press("Screenshot")
     wait_for(lambda: [n for n in tab.notifications if n["title"] == "One at a time"])
     began = time.monotonic()

@@ -11,7 +11,7 @@ import pytest
 from app.files.uploads import profile_changes
 from app.panels.road_parts import parts_from, parts_text, with_part, without_last
 from app.runs.history import run_name
-from app.runs.runner import Wish
+from app.runs.request import Request
 from app.tabs.road_profile import AHEAD, BEHIND, HEIGHT, WIDTH, RoadAhead, road_view, span_of
 from model.config.config import Config, ConfigError, HalfRoundRoad, RandomRoad, SineRoad, SumRoad, load_config
 from model.road.road import build_road
@@ -100,14 +100,14 @@ def test_what_means_nothing_is_refused_by_its_place(text: str, path: str) -> Non
     assert path in {fault.path for fault in error.value.faults}
 
 
-def named(wish: Wish) -> str:
-    return run_name(wish.base, wish.config())
+def named(request: Request) -> str:
+    return run_name(request.base, request.config())
 
 
 def test_runs_on_new_roads_have_short_names() -> None:
-    wish = Wish(PAPER, {"road.type": "profile", "road.points": "5 0, 6 0.1, 9 0"})
-    assert named(wish) == "Road type sine → profile, Profile 3 points, 4 m long, 0.1 m high"
-    assert named(Wish(PAPER, with_part(PAPER, "step"))).endswith("Parts sine + step")
+    request = Request(PAPER, {"road.type": "profile", "road.points": "5 0, 6 0.1, 9 0"})
+    assert named(request) == "Road type sine → profile, Profile 3 points, 4 m long, 0.1 m high"
+    assert named(Request(PAPER, with_part(PAPER, "step"))).endswith("Parts sine + step")
 
 
 # Profiles
@@ -129,7 +129,8 @@ def test_a_profile_is_opened_in_a_tab(explore: Any, open_tab: Any) -> None:
     wait_for(lambda: "3 points, 3 m long, 0.1 m high" in tab.html("trackride-extent"), "what it is")
 
 
-def test_obstacles_are_added_and_edited_in_a_tab(explore: Any, open_tab: Any) -> None:
+def test_obstacles_are_added_and_edited_in_a_tab(explore: Any, open_tab: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.session.session.REFUSAL_DELAY", 0.1)
     tab: Tab = open_tab(explore())
     wait_for(lambda: tab.shows_run(1), "run 1")
     tab.use("Add", "Half round")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import html
 import re
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,11 +15,11 @@ from typer.testing import CliRunner, Result
 
 import model
 from app import cli
+from app.format.differences import figure_text
 from app.reports import run_report as report
 from app.reports.drawings import LIGHT, Drawing
 from app.reports.html_page import Html, element, table
 from app.reports.run_report import report_page, ride_rows
-from app.tabs.comparison import figure_text
 from model import load_config, simulate
 from model.analysis.ride import summary
 from model.config.config import parse_config
@@ -173,3 +175,19 @@ def test_bad_input_is_said_before_computing(tmp_path, monkeypatch, name, said):
 def test_only_html_is_put_on_the_page_as_it_is():
     assert element("p", "a<b", Html("<i>c</i>"), title='"x"') == '<p title="&quot;x&quot;">a&lt;b<i>c</i></p>'
     assert "<th>1&lt;2</th><td>&amp;</td>" in table(("a", "b"), [("1<2", "&")])
+
+
+def test_what_makes_reports_loads_no_viser_and_no_panel():
+    """All modules of the model and of these folders, really imported; nobody needs a browser for a report."""
+    program = """
+import importlib, pkgutil, sys
+for folder in ("model", "app.format", "app.plots", "app.tabs", "app.reports"):
+    package = importlib.import_module(folder)
+    for module in pkgutil.walk_packages(package.__path__, folder + "."):
+        importlib.import_module(module.name)
+print(*sys.modules)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.split())
+    assert {"app.reports.paper.page", "app.tabs.trust", "model.paper.study"} <= loaded
+    assert not [name for name in loaded if name.split(".")[0] == "viser" or name.startswith("app.panels")]

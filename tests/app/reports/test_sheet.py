@@ -17,9 +17,9 @@ from matplotlib.text import Text
 from PIL import Image
 
 from app.format.colours import wheel_palette
+from app.format.differences import figure_text
 from app.reports.sheet import BOTTOM, compose, stamped_figure
 from app.reports.sheet_page import DPI, HEIGHT, MARGIN, WIDTH, Page
-from app.tabs.comparison import figure_text
 from app.view3d.meshes.hull import PAINT
 from model import load_config, simulate
 from model.config.config import Config

@@ -1,9 +1,8 @@
-"""The endless drive: in step with real time however long it lasts, slower rather than behind, following all wishes."""
+"""The endless drive: in step with real time however long it lasts, slower rather than behind, following each change."""
 
 from __future__ import annotations
 
 import gc
-import time
 from dataclasses import replace
 from typing import Any
 
@@ -14,7 +13,8 @@ import app.runs.runner
 from app.panels.playback_panel import driven_text
 from app.runs.drive import ALIGNED, FRAME, LONGEST_FRAME, PLOTTED, Driver, Pace, aligned
 from app.runs.playback import Playback
-from app.runs.runner import Driven, Failed, Finished, Refused, Runner, Wish
+from app.runs.request import Driven, Failed, Finished, Refused, Request
+from app.runs.runner import Runner
 from model.analysis.ride import penetration
 from model.config.config import Config, load_config
 from model.dynamics.equilibrium import NoEquilibriumError
@@ -22,7 +22,7 @@ from model.road.road import Road
 from model.simulation.drive import LiveDrive
 from model.simulation.integrate import STATUS, Status
 from model.simulation.trajectory import Trajectory
-from tests.app.conftest import FakeScene, Tab, make_run, simulate_at_once, trackride_threads, wait_for
+from tests.app.conftest import FakeView, Tab, make_run, pass_frames, simulate_at_once, trackride_threads, wait_for
 
 PAPER = load_config("paper")
 SPEED = "drive.speed_kmh"
@@ -164,7 +164,7 @@ def test_a_drive_that_stands_shows_its_whole_past_on_the_road_it_drove_on() -> N
 
 def start(first: Config = PAPER, run: Any = simulate_at_once) -> tuple[Runner, list[Exception]]:
     errors: list[Exception] = []
-    return Runner(Wish(first), run, lambda: None, errors.append), errors
+    return Runner(Request(first), run, lambda: None, errors.append), errors
 
 
 def next_of(runner: Runner, kind: type, condition: Any = lambda outcome: True) -> Any:
@@ -172,33 +172,46 @@ def next_of(runner: Runner, kind: type, condition: Any = lambda outcome: True) -
     return found[0]
 
 
-def test_a_wish_acts_on_the_moving_vehicle() -> None:
+def test_a_request_acts_on_the_moving_vehicle() -> None:
     runner, errors = start()
     runner.drive(1.0)
     before = next_of(runner, Driven, lambda outcome: outcome.state.time > 0.2)
-    runner.change(lambda wish: wish.changed(SPEED, 25))
+    runner.change(lambda request: request.changed(SPEED, 25))
     after = next_of(runner, Driven, lambda outcome: outcome.state.config.drive.speed_kmh == 25)
     runner.close()
-    assert after.wish.number == before.wish.number + 1
+    assert after.request.number == before.request.number + 1
     assert after.state.time > before.state.time
     assert errors == []
 
 
-def pause() -> None:
-    time.sleep(0.2)
+def test_a_pause_is_not_made_up_for() -> None:
+    clock = Clock()
+    driver = Driver(PAPER, clock)
+    driver.frame(1.0)
+    stood = driver.stand().time
+    clock.now += 20.0
+    assert driver.frame(1.0).time - stood == pytest.approx(FRAME)
 
 
-def test_standing_resuming_and_starting_anew() -> None:
+def test_standing_resuming_and_starting_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    waits: list[bool] = []
+
+    def noted(runner: Runner) -> bool:
+        waits.append(has_to_drive(runner))
+        return waits[-1]
+
+    has_to_drive = Runner._has_to_drive
+    monkeypatch.setattr(Runner, "_has_to_drive", noted)
     runner, _ = start()
     runner.drive(1.0)
     next_of(runner, Driven, lambda outcome: outcome.state.time > 0.3)
     runner.drive(0.0)
     stood = next_of(runner, Driven, lambda outcome: outcome.state.stands).state.time
-    pause()
+    wait_for(lambda: waits[-1:] == [False], "the thread to wait")
     assert runner.take() == []
     runner.drive(1.0)
     resumed = next_of(runner, Driven)
-    assert resumed.state.time - stood < 0.3  # the pause is not made up for
+    assert resumed.state.time - stood < 0.3
     assert not resumed.state.stands
     runner.drive(1.0, anew=True)
     assert next_of(runner, Driven, lambda outcome: outcome.state.time < 0.2)
@@ -209,7 +222,7 @@ def test_back_to_runs_shows_the_run_of_the_present_parameters() -> None:
     runner, _ = start()
     next_of(runner, Finished)
     runner.drive(1.0)
-    runner.change(lambda wish: wish.changed(SPEED, 40))
+    runner.change(lambda request: request.changed(SPEED, 40))
     next_of(runner, Driven, lambda outcome: outcome.state.config.drive.speed_kmh == 40)
     runner.drive(None)
     assert next_of(runner, Finished).trajectory.config.drive.speed_kmh == 40
@@ -227,19 +240,19 @@ def test_a_run_under_way_is_given_up_for_the_drive() -> None:
     runner.close()
 
 
-def test_a_bad_wish_is_refused_and_the_drive_goes_on_with_the_good_one() -> None:
+def test_a_bad_request_is_refused_and_the_drive_goes_on_with_the_good_one() -> None:
     runner, _ = start()
     runner.drive(1.0)
     good = next_of(runner, Driven)
-    runner.change(lambda wish: wish.changed(SPEED, -1))
+    runner.change(lambda request: request.changed(SPEED, -1))
     refused = next_of(runner, Refused)
-    assert runner.withdraw(refused.wish, good.wish)
+    assert runner.withdraw(refused.request, good.request)
     later = next_of(runner, Driven, lambda outcome: outcome.state.time > good.state.time + 0.1)
     runner.close()
     assert later.state.config == PAPER
 
 
-def test_what_cannot_stand_at_rest_fails_and_the_next_wish_drives(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_cannot_stand_at_rest_fails_and_the_next_request_drives(monkeypatch: pytest.MonkeyPatch) -> None:
     class Picky(Driver):
         def __init__(self, config: Config) -> None:
             if config.drive.speed_kmh == 20:
@@ -250,7 +263,7 @@ def test_what_cannot_stand_at_rest_fails_and_the_next_wish_drives(monkeypatch: p
     runner, errors = start(PAPER.replace({SPEED: 20}))
     runner.drive(1.0)
     assert next_of(runner, Failed).message == "springs too soft"
-    runner.change(lambda wish: wish.changed(SPEED, 25))
+    runner.change(lambda request: request.changed(SPEED, 25))
     assert next_of(runner, Driven).state.config.drive.speed_kmh == 25
     runner.close()
     assert errors == []
@@ -263,16 +276,16 @@ def test_a_tab_drives_on_with_sliders_plots_and_player(explore: Any, open_tab: A
     explorer = explore()
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
-    scene: FakeScene = explorer.sessions[0]._window.scene
+    view: FakeView = explorer.sessions[0]._window.view
     tab.use("Mode", "○ Drive")
     wait_for(lambda: tab.widget("Mode")["props"]["options"][1] == "● Drive", "the mode to show")
     wait_for(lambda: "m · " in tab.widget("Driven")["value"])
-    wait_for(lambda: len(scene.roads) > 10)
-    assert isinstance(scene.roads[-1], Road)
-    assert scene.times[-1] > scene.times[-5]
+    wait_for(lambda: len(view.roads) > 10)
+    assert isinstance(view.roads[-1], Road)
+    assert view.times[-1] > view.times[-5]
     tab.use("Speed, km/h", 25)
-    wait_for(lambda: scene.runs[-1].config.drive.speed_kmh == 25, "the new speed")
-    assert scene.runs[-1].t[-1] > 0.3  # no restart
+    wait_for(lambda: view.runs[-1].config.drive.speed_kmh == 25, "the new speed")
+    assert view.runs[-1].t[-1] > 0.3  # no restart
     ends = []
     for _ in range(3):
         ends.append(tab.charts()[0]["data"][0][-1])
@@ -281,11 +294,11 @@ def test_a_tab_drives_on_with_sliders_plots_and_player(explore: Any, open_tab: A
     wait_for(lambda: "of 0.125×" in tab.widget("Driven")["value"], "the target")
     tab.press("Play or pause")
     wait_for(lambda: "look back" in tab.status)
-    stood = len(scene.roads)
-    pause()
-    assert len(scene.roads) == stood
+    stood = len(view.roads)
+    pass_frames(explorer)
+    assert len(view.roads) == stood
     tab.use("Playback", "|◀ Restart")
-    wait_for(lambda: scene.runs[-1].t[-1] < 0.2)
+    wait_for(lambda: view.runs[-1].t[-1] < 0.2)
     tab.press("Drive on and on, or back to the run")
     wait_for(lambda: tab.shows_run(3))
     wait_for(lambda: np.isclose(tab.charts()[0]["data"][1][0], 25))
@@ -296,22 +309,23 @@ def test_a_page_in_the_background_stands_still(explore: Any, open_tab: Any) -> N
     explorer = explore()
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
-    scene: FakeScene = explorer.sessions[0]._window.scene
+    view: FakeView = explorer.sessions[0]._window.view
     tab.use("In view", False)
     wait_for(lambda: not explorer.sessions[0]._in_view)
-    pause()
-    times = len(scene.times)
-    pause()
-    assert len(scene.times) == times
+    pass_frames(explorer)
+    times = len(view.times)
+    pass_frames(explorer)
+    assert len(view.times) == times
     tab.use("In view", True)
-    wait_for(lambda: len(scene.times) > times)
+    wait_for(lambda: len(view.times) > times)
     tab.use("Mode", "○ Drive")
-    wait_for(lambda: len(scene.roads) > 3)
+    wait_for(lambda: len(view.roads) > 3)
     tab.use("In view", False)
-    pause()
-    driven = scene.runs[-1].t[-1]
-    pause()
-    assert scene.runs[-1].t[-1] == driven
+    wait_for(lambda: explorer.sessions[0]._good.state.stands, "the drive to stand")
+    pass_frames(explorer)
+    driven = view.runs[-1].t[-1]
+    pass_frames(explorer)
+    assert view.runs[-1].t[-1] == driven
     tab.close()
     wait_for(lambda: not trackride_threads(), "the threads to end")
 

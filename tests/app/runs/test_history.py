@@ -6,7 +6,7 @@ import pytest
 
 import app.runs.history
 from app.runs.history import REST, RUN_COLOURS, RUNS, Changes, Runs, differences, run_name, size
-from app.runs.runner import Wish
+from app.runs.request import Request
 from model.config.config import load_config
 from tests.app.conftest import make_run
 
@@ -14,16 +14,16 @@ PAPER, HALF_ROUND = load_config("paper"), load_config("half_round")
 SPEED, AMPLITUDE = "drive.speed_kmh", "road.amplitude"
 
 
-def faster(speed: float) -> Wish:
-    return Wish(PAPER).changed(SPEED, speed)
+def faster(speed: float) -> Request:
+    return Request(PAPER).changed(SPEED, speed)
 
 
-def named(wish: Wish) -> str:
-    return run_name(wish.base, wish.config())
+def named(request: Request) -> str:
+    return run_name(request.base, request.config())
 
 
 def test_each_rested_change_is_a_step_back_and_forth():
-    changes = Changes(Wish(PAPER))
+    changes = Changes(Request(PAPER))
     changes.note(faster(20), 10.0)
     changes.note(faster(20).changed(AMPLITUDE, 0.2), 20.0)
     assert changes.go(-1).changes == {SPEED: 20}
@@ -34,7 +34,7 @@ def test_each_rested_change_is_a_step_back_and_forth():
 
 
 def test_a_drag_is_one_step():
-    changes = Changes(Wish(PAPER))
+    changes = Changes(Request(PAPER))
     for k in range(50):
         changes.note(faster(16 + k), 10 + k * REST / 2)
     assert changes.present.changes == {SPEED: 65}
@@ -42,7 +42,7 @@ def test_a_drag_is_one_step():
 
 
 def test_quick_changes_of_two_parameters_are_two_steps():
-    changes = Changes(Wish(PAPER))
+    changes = Changes(Request(PAPER))
     changes.note(faster(20), 10.0)
     changes.note(faster(20).changed(AMPLITUDE, 0.2), 10.1)
     changes.note(faster(20).changed(AMPLITUDE, 0.25), 10.2)
@@ -50,14 +50,14 @@ def test_quick_changes_of_two_parameters_are_two_steps():
 
 
 def test_two_presets_loaded_quickly_are_two_steps():
-    changes = Changes(Wish(PAPER))
-    changes.note(Wish(HALF_ROUND), 10.0)
-    changes.note(Wish(load_config("short_waves")), 10.1)
+    changes = Changes(Request(PAPER))
+    changes.note(Request(HALF_ROUND), 10.0)
+    changes.note(Request(load_config("short_waves")), 10.1)
     assert changes.go(-1).base == HALF_ROUND
 
 
 def test_a_change_after_undo_forgets_what_was_undone_and_does_not_join_the_step_before():
-    changes = Changes(Wish(PAPER))
+    changes = Changes(Request(PAPER))
     changes.note(faster(20), 10.0)
     changes.note(faster(30), 20.0)
     changes.go(-1)
@@ -69,38 +69,38 @@ def test_a_change_after_undo_forgets_what_was_undone_and_does_not_join_the_step_
 
 
 def test_a_reset_in_the_middle_of_a_drag_is_a_step_of_its_own():
-    changes = Changes(Wish(PAPER))
+    changes = Changes(Request(PAPER))
     changes.note(faster(20), 10.0)
     changes.note(faster(30), 20.0)
-    changes.note(Wish(PAPER), 20.1)
+    changes.note(Request(PAPER), 20.1)
     assert changes.go(-1).changes == {SPEED: 30}
 
 
 def test_steps_are_bounded(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(app.runs.history, "STEPS", 5)
-    changes = Changes(Wish(PAPER))
+    changes = Changes(Request(PAPER))
     for k in range(20):
         changes.note(faster(10 + k), 10.0 * k)
     assert changes.go(-100).changes == {SPEED: 24}
 
 
 def test_a_run_is_named_after_its_changes_in_shown_units():
-    assert named(Wish(PAPER)) == PAPER.name
+    assert named(Request(PAPER)) == PAPER.name
     assert named(faster(22)) == "Speed 15 → 22 km/h"
     assert named(faster(15)) == PAPER.name  # as it was
-    both = Wish(PAPER).changed("vehicle.road_suspension.damping", 2366.0).changed(AMPLITUDE, 0.15)
+    both = Request(PAPER).changed("vehicle.road_suspension.damping", 2366.0).changed(AMPLITUDE, 0.15)
     assert named(both) == "Road damping 4.732 → 2.366 kN s/m, Amplitude 100 → 150 mm"
     many = both.changed(SPEED, 22).changed("contact.friction", 0.5)
     assert named(many).endswith(" and 2 more")
-    assert named(Wish(PAPER).changed("vehicle.imaginary_wheels.enabled", False)) == "Imaginary wheels on → off"
-    flat = named(Wish(PAPER).changed("road.type", "flat"))
+    assert named(Request(PAPER).changed("vehicle.imaginary_wheels.enabled", False)) == "Imaginary wheels on → off"
+    flat = named(Request(PAPER).changed("road.type", "flat"))
     assert flat == "Road type sine → flat"
-    assert "left out → 3" in named(Wish(PAPER).changed("road.start", 3.0))
+    assert "left out → 3" in named(Request(PAPER).changed("road.start", 3.0))
 
 
 def test_runs_are_told_apart_and_kept_once():
     runs = Runs()
-    first = runs.keep(Wish(PAPER), make_run(PAPER))
+    first = runs.keep(Request(PAPER), make_run(PAPER))
     second = runs.keep(faster(20), make_run(faster(20).config()))
     assert first.colour != second.colour
     assert [kept.number for kept in runs] == [1, 2]
@@ -150,8 +150,8 @@ def test_memory_is_bounded_by_letting_the_oldest_trajectories_go(monkeypatch: py
 
 def test_what_was_kept_at_an_earlier_visit_is_kept_once_with_name_and_colour():
     runs, earlier = Runs(), Runs()
-    now = runs.keep(Wish(PAPER), make_run(PAPER))
-    earlier.keep(Wish(PAPER), make_run(PAPER))
+    now = runs.keep(Request(PAPER), make_run(PAPER))
+    earlier.keep(Request(PAPER), make_run(PAPER))
     then = earlier.keep(faster(20), make_run(faster(20).config()), name="mine")
     assert runs.take_back(next(iter(earlier))) is now
     back = runs.take_back(then)
@@ -162,5 +162,5 @@ def test_what_was_kept_at_an_earlier_visit_is_kept_once_with_name_and_colour():
 def test_rates_of_torsion_bars_are_told_in_their_own_unit():
     stiffness = "vehicle.road_suspension.stiffness"
     bars = PAPER.replace({"vehicle.road_suspension.basis": "torsion", stiffness: 9000})
-    assert named(Wish(bars).changed(stiffness, 8000)) == "Road stiffness 9 → 8 kN m/rad"
+    assert named(Request(bars).changed(stiffness, 8000)) == "Road stiffness 9 → 8 kN m/rad"
     assert "Road stiffness 75.53 kN/m → 9 kN m/rad" in differences(PAPER, bars)

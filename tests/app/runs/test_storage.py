@@ -13,20 +13,20 @@ from hypothesis import strategies as st
 
 from app.panels.road_parts import ADDED, with_part
 from app.runs.history import RUN_COLOURS, RUNS, Kept, Runs
-from app.runs.runner import Wish
+from app.runs.request import Request
 from app.runs.storage import LONGEST, PRESETS, State, state_from, state_text
 from model.config.config import load_config
 from tests.app.conftest import make_run
 
 PAPER, OTHER = load_config("paper"), load_config("half_round")
-WISH = Wish(PAPER).changed("drive.speed_kmh", 33).changed("vehicle.road_suspension.stiffness", (6e4, *[7e4] * 5))
+REQUEST = Request(PAPER).changed("drive.speed_kmh", 33).changed("vehicle.road_suspension.stiffness", (6e4, *[7e4] * 5))
 
 
 def kept_runs() -> tuple[Kept, ...]:
     runs = Runs()
     for speed in (10, 20, 30):
-        wish = Wish(OTHER, {"drive.speed_kmh": speed})
-        runs.keep(wish, make_run(wish.config(), samples=2))
+        request = Request(OTHER, {"drive.speed_kmh": speed})
+        runs.keep(request, make_run(request.config(), samples=2))
     runs.rename(2, "Mine")
     return tuple(runs)
 
@@ -34,20 +34,20 @@ def kept_runs() -> tuple[Kept, ...]:
 @cache
 def text() -> str:
     runs = kept_runs()
-    return state_text(PAPER, WISH, [OTHER], runs, runs[1], dark=True)
+    return state_text(PAPER, REQUEST, [OTHER], runs, runs[1], dark=True)
 
 
 def test_all_comes_back_but_the_trajectories() -> None:
     runs = tuple(replace(kept, number=0, run=None) for kept in kept_runs())
-    assert state_from(text()) == State(PAPER, Wish(PAPER, WISH.changes), (OTHER,), runs, runs[1], dark=True)
+    assert state_from(text()) == State(PAPER, Request(PAPER, REQUEST.changes), (OTHER,), runs, runs[1], dark=True)
 
 
 @pytest.mark.parametrize("added", ADDED)
 def test_a_road_made_of_parts_comes_back(added: str) -> None:
-    wish = Wish(PAPER, with_part(PAPER, added))
-    found = state_from(state_text(PAPER, wish, [wish.config()], (), None, dark=None))
-    assert found.wish is not None
-    assert found.wish.config() == found.presets[0] == wish.config()
+    request = Request(PAPER, with_part(PAPER, added))
+    found = state_from(state_text(PAPER, request, [request.config()], (), None, dark=None))
+    assert found.request is not None
+    assert found.request.config() == found.presets[0] == request.config()
 
 
 @pytest.mark.parametrize("stored", ["", "nonsense", "[]", "null", "3", "[" * 100_000, " " * LONGEST + "{}"])
@@ -63,7 +63,7 @@ def test_what_cannot_be_used_is_left_out_and_the_rest_comes_back() -> None:
     state["runs"][0]["colour"] = "red } </style><script>"
     del state["runs"][1]["base"]
     found = state_from(json.dumps(state))
-    assert (found.start, found.wish, found.presets) == (PAPER, None, (OTHER,))
+    assert (found.start, found.request, found.presets) == (PAPER, None, (OTHER,))
     assert [kept.config.drive.speed_kmh for kept in found.runs] == [30]
 
 
@@ -97,6 +97,6 @@ def test_no_value_put_anywhere_does_harm(data: st.DataObject) -> None:
         part = part[key]
     part[key] = data.draw(JSON)
     found = state_from(json.dumps(state))
-    assert all(kept.colour in RUN_COLOURS and kept.wish.config() == kept.config for kept in found.runs)
-    if found.wish is not None:
-        state_text(PAPER, found.wish, found.presets, found.runs, found.baseline, found.dark)
+    assert all(kept.colour in RUN_COLOURS and kept.request.config() == kept.config for kept in found.runs)
+    if found.request is not None:
+        state_text(PAPER, found.request, found.presets, found.runs, found.baseline, found.dark)

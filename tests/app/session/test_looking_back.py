@@ -13,7 +13,7 @@ from app.tabs.trust import trust_html
 from model.analysis.ride import suspension_travel
 from model.config.config import load_config
 from model.simulation.simulate import simulate
-from tests.app.conftest import FakeScene, Tab, wait_for
+from tests.app.conftest import FakeView, Tab, wait_for
 from tests.app.runs.test_drive import Clock
 from tests.app.session.test_transfers import answer_renders, download, renders
 
@@ -30,23 +30,23 @@ def test_stepping_back_pauses_the_drive_and_shows_its_past(explore: Any, open_ta
     explorer = explore()
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
-    scene: FakeScene = explorer.sessions[0]._window.scene
+    view: FakeView = explorer.sessions[0]._window.view
     drive(tab, 0.5)
     tab.press("Ten steps back")
-    wait_for(lambda: "look back" in tab.status and scene.runs[-1].t[0] == 0.0, "the past")
-    end = scene.runs[-1].t[-1]
-    wait_for(lambda: end - 0.2 < scene.times[-1] < end - 0.05, "0.1 s before the end")
+    wait_for(lambda: "look back" in tab.status and view.runs[-1].t[0] == 0.0, "the past")
+    end = view.runs[-1].t[-1]
+    wait_for(lambda: end - 0.2 < view.times[-1] < end - 0.05, "0.1 s before the end")
     tab.use("Time, s", 0.25)
-    wait_for(lambda: scene.times[-1] == 0.25)
+    wait_for(lambda: view.times[-1] == 0.25)
     wait_for(lambda: "[[0.25," in tab.html("trackride-time"), "the cursor")
-    assert scene.roads[-1].nearest(scene.runs[-1].q[:, scene.runs[-1].system.wheel, :2].reshape(-1, 2))[2].max() < 1.0
+    assert view.roads[-1].nearest(view.runs[-1].q[:, view.runs[-1].system.wheel, :2].reshape(-1, 2))[2].max() < 1.0
     tab.use("Speed, km/h", 25)  # takes part in the pause
-    wait_for(lambda: scene.runs[-1].config.drive.speed_kmh == 25)
-    wait_for(lambda: scene.times[-1] == 0.25)
+    wait_for(lambda: view.runs[-1].config.drive.speed_kmh == 25)
+    wait_for(lambda: view.times[-1] == 0.25)
     tab.press("Play or pause")
-    wait_for(lambda: scene.times[-1] > end + 0.1, "the drive to go on")
-    assert scene.runs[-1].t[-1] < end + 5.0
-    assert not explorer.sessions[0]._window._notices
+    wait_for(lambda: view.times[-1] > end + 0.1, "the drive to go on")
+    assert view.runs[-1].t[-1] < end + 5.0
+    assert not explorer.sessions[0]._window._notifications
 
 
 def test_tabs_that_cost_more_follow_a_drive_and_say_which_stretch_they_show(explore: Any, open_tab: Any) -> None:
@@ -103,25 +103,25 @@ def test_a_movie_of_a_pause_films_the_past_and_leaves_the_drive_alone(
     explorer = explore()
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
-    scene: FakeScene = explorer.sessions[0]._window.scene
+    view: FakeView = explorer.sessions[0]._window.view
     drive(tab, 0.3)
     tab.press("Play or pause")
     wait_for(lambda: "look back" in tab.status)
-    end = scene.runs[-1].t[-1]
+    end = view.runs[-1].t[-1]
     tab.use("Time, s", 0.1)
-    wait_for(lambda: scene.times[-1] == 0.1)
+    wait_for(lambda: view.times[-1] == 0.1)
     explorer.sessions[0].export("movie")
     times, count = [], 0
     while count < 3:
         wait_for(lambda count=count: renders(tab) > count, "a request")
-        times.append(scene.times[-1])
+        times.append(view.times[-1])
         count = answer_renders(tab, count)
     assert times == pytest.approx([0.1, 0.15, 0.2])
     assert "_drive-0-" in download(tab, ".mp4")[0]
-    wait_for(lambda: scene.times[-1] == 0.1, "the time that was shown before")
-    assert scene.runs[-1].t[-1] == end  # it has stood all the while
+    wait_for(lambda: view.times[-1] == 0.1, "the time that was shown before")
+    assert view.runs[-1].t[-1] == end  # it has stood all the while
     tab.press("Play or pause")
-    wait_for(lambda: scene.times[-1] > end)
+    wait_for(lambda: view.times[-1] > end)
 
 
 def test_figures_of_a_stretch_count_from_rest_and_from_the_start_of_the_drive() -> None:

@@ -10,7 +10,7 @@ import pytest
 import app.session.window
 from model.config.config import Config
 from model.simulation.trajectory import Trajectory
-from tests.app.conftest import PATIENCE, FakeScene, Tab, as_typed, make_run, wait_for
+from tests.app.conftest import PATIENCE, FakeView, Tab, as_typed, make_run, wait_for
 
 
 def test_what_is_not_seen_at_first_waits_until_the_page_stands(
@@ -20,16 +20,16 @@ def test_what_is_not_seen_at_first_waits_until_the_page_stands(
     explorer = explore()
     tab: Tab = open_tab(explorer, stands=False)
     wait_for(lambda: tab.shows_run(1) and tab.charts(), "the curves")
-    scene: FakeScene = explorer.sessions[0]._window.scene
+    view: FakeView = explorer.sessions[0]._window.view
 
     def labels() -> set[str]:
         return {as_typed(widget["props"].get("label") or "") for widget in tuple(tab.widgets.values())}
 
     assert {"Speed, km/h", "Preset", "Export", "Vehicle"} <= labels()
     assert "Hull mass, kg" not in labels()
-    assert not scene.runs
+    assert not view.runs
     tab.use("Tabs in front", "Loads")
-    wait_for(lambda: scene.runs and scene.times, "the vehicle")
+    wait_for(lambda: view.runs and view.times, "the vehicle")
     tab.find("Hull mass, kg")
     tab.press("Play or pause")
 
@@ -40,7 +40,7 @@ def test_a_page_that_does_not_say_that_it_stands_is_taken_to(
     monkeypatch.setattr(app.session.window, "LAID_OUT_WITHIN", 0.2)
     explorer = explore()
     tab: Tab = open_tab(explorer, stands=False)
-    wait_for(lambda: explorer.sessions and explorer.sessions[0]._window.scene.times, "the vehicle")
+    wait_for(lambda: explorer.sessions and explorer.sessions[0]._window.view.times, "the vehicle")
     tab.find("Hull mass, kg")
 
 

@@ -1,26 +1,345 @@
-"""Downloads and uploads of a tab, over viser's own protocol."""
+"""Downloads and uploads: what is sent and what is made of files, without a server; the last tests go through a tab."""
 
 from __future__ import annotations
 
 import io
-import re
-import time
-import zipfile
+import threading
+from collections.abc import Callable
+from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from PIL import Image
 
-import app.session.background
-from app.files.uploads import configuration, run_from
-from app.tabs.comparison import change_text, comparison_table, figure_text
-from model.analysis.ride import comparison
-from model.config.config import SIZE_LIMIT, ConfigError, load_config, parse_config
+import app.reports.sheet
+from app.files.pictures import FIGURE_SIZE
+from app.runs.drive import Driver
+from app.runs.request import Request
+from app.runs.storage import state_text
+from app.session.transfers import AT_REST, NO_RUN, PAUSE_FIRST, STORED, Download, Transfers
+from model.config.config import Config, load_config, parse_config
+from model.dynamics.equilibrium import NoEquilibriumError
 from model.simulation.trajectory import Trajectory
-from tests.app.conftest import Tab, make_run, trackride_threads, wait_for
+from tests.app.conftest import PATIENCE, Tab, make_run, simulate_at_once, wait_for
+from tests.app.runs.test_drive import Clock
+from tests.app.session.conftest import Called, FakeWindow
 
 PAPER = load_config("paper")
+FASTER = Request(PAPER).changed("drive.speed_kmh", 22)
+
+
+class FakeStorage:
+    """What a browser has stored."""
+
+    def __init__(self) -> None:
+        self.items: dict[str, str] = {}
+        self.mute = False
+
+    def get_item(self, key: str, timeout: float) -> str | None:
+        if self.mute:
+            raise TimeoutError
+        return self.items.get(key)
+
+    def set_item(self, key: str, value: str) -> None:
+        self.items[key] = value
+
+
+class FakeClient:
+    """The browser's side: it draws pictures of one colour and keeps what it is sent."""
+
+    def __init__(self) -> None:
+        self.sent: dict[str, bytes] = {}  # name -> content
+        self.local_storage = FakeStorage()
+        self.camera = SimpleNamespace(wxyz=np.array([1.0, 0, 0, 0]), position=np.zeros(3), fov=0.4, aspect=1.6)
+        self.sizes: list[tuple[int, int]] = []  # of pictures that were asked for
+        self.before_picture: Callable[[], None] = lambda: None
+
+    def get_render(self, height: int, width: int, *, transport_format: str, **how: Any) -> np.ndarray:
+        self.sizes.append((width, height))
+        self.before_picture()
+        return np.full((height, width, 3 if transport_format == "jpeg" else 4), 60, dtype=np.uint8)
+
+    def send_file_download(self, name: str, content: bytes, save_immediately: bool) -> None:
+        self.sent[name] = content
+
+
+class FakeDrawing:
+    """The thread that draws: what it is given is done at once."""
+
+    def __init__(self, shown: Trajectory | None) -> None:
+        self.shown = shown
+        self.times: list[float] = []
+        self.toggled = 0
+        self.errors: list[Exception] = []
+
+    def post(self, kind: str, act: Callable[[], None]) -> None:
+        act()
+
+    def show_now(self, act: Callable[[], None]) -> None:
+        act()
+
+    def seek(self, time: float) -> None:
+        self.times.append(time)
+
+    def toggle(self) -> None:
+        self.toggled += 1
+
+    def fail(self, error: Exception) -> None:
+        self.errors.append(error)
+
+
+class Rig:
+    """Transfers among stand-ins, and a run to take home."""
+
+    def __init__(self, simulate: Any = simulate_at_once) -> None:
+        self.run = make_run(FASTER.config())
+        self.client, self.drawing = FakeClient(), FakeDrawing(self.run)
+        self.window, self.workspace = FakeWindow(), Called()
+        parts: Any = (self.client, self.drawing, self.window, self.workspace)
+        self.transfers = Transfers(*parts, simulate)
+        self.download = Download(
+            request=FASTER,
+            run=self.run,
+            baseline=None,
+            size=(64, 36),
+            transparent=False,
+            background="#ffffff",
+            dark=False,
+            time=1.0,
+            playing=False,
+            drive=None,
+        )
+
+    def send(self, what: str, **changes: Any) -> tuple[str, bytes]:
+        """Name and content of what the browser got last."""
+        self.transfers.send(what, replace(self.download, **changes))
+        self.wait()
+        return list(self.client.sent.items())[-1] if self.client.sent else ("", b"")
+
+    def wait(self) -> None:
+        """Until nothing is under way."""
+        jobs = (self.transfers._files, self.transfers._memory)
+        wait_for(lambda: not any(job.busy for job in jobs), "the job to end")
+
+
+@pytest.fixture
+def rig() -> Rig:
+    return Rig()
+
+
+# ── Out ──
+
+
+def test_data_is_named_after_preset_and_change_and_holds_the_run(rig: Rig) -> None:
+    name, content = rig.send("yaml")
+    assert name == "paper-vehicle_speed-22-km-h.yaml"
+    assert parse_config(content.decode()) == FASTER.config()
+    name, content = rig.send("run.npz")
+    assert name == "paper-vehicle_speed-22-km-h.npz"
+    assert Trajectory.load(io.BytesIO(content), name).config == FASTER.config()
+    assert rig.send("run.csv")[1].startswith(b"t [s],")
+    assert rig.window.progress == []
+
+
+def test_a_figure_is_made_with_a_picture_of_the_vehicle_or_without(rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
+    pictures: list[bytes | None] = []
+
+    def figure(run: Any, baseline: Any, picture: bytes | None, title: str, suffix: str, time: float) -> bytes:
+        pictures.append(picture)
+        return f"{title} {suffix} {time:g}".encode()
+
+    monkeypatch.setattr(app.reports.sheet, "stamped_figure", figure)
+    name, content = rig.send("figure.svg")
+    assert name == "paper-vehicle_speed-22-km-h_figure.svg"
+    assert content.decode() == "Paper vehicle: Speed 15 → 22 km/h .svg 1"
+    assert rig.client.sizes == [FIGURE_SIZE]
+    assert rig.window.progress == ["Drawing the figure…", ""]
+
+    def hidden() -> None:
+        raise TimeoutError
+
+    rig.client.before_picture = hidden
+    assert rig.send("figure.png")[0].endswith("_figure.png")
+    assert [picture is not None for picture in pictures] == [True, False]
+
+
+def test_a_transparent_picture_has_neither_sky_nor_ground(rig: Rig) -> None:
+    seen: list[list[bool]] = []
+    rig.client.before_picture = lambda: seen.append(list(rig.window.surroundings))
+    name, content = rig.send("picture", transparent=True)
+    assert name == "paper-vehicle_speed-22-km-h_64x36.png"
+    assert Image.open(io.BytesIO(content)).mode == "RGBA"
+    assert seen == [[False]]
+    assert rig.window.surroundings == [False, True]
+    assert Image.open(io.BytesIO(rig.send("picture")[1])).mode == "RGB"
+
+
+def test_sky_and_ground_come_back_after_a_picture_that_failed(rig: Rig) -> None:
+    def gone() -> None:
+        raise RuntimeError
+
+    rig.client.before_picture = gone
+    assert rig.send("picture", transparent=True) == ("", b"")
+    assert rig.window.titles == ["No picture"]
+    assert rig.window.surroundings == [False, True]
+
+
+@pytest.fixture
+def _short_movie(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.session.transfers.MOVIE_LENGTH", 0.3)
+    monkeypatch.setattr("app.files.pictures.MOVIE_SIZE", (64, 36))
+
+
+@pytest.mark.usefixtures("_short_movie")
+def test_a_movie_films_the_run_and_playback_goes_on(rig: Rig) -> None:
+    name, content = rig.send("movie", playing=True)
+    assert name == "paper-vehicle_speed-22-km-h.mp4"
+    assert b"ftyp" in content[:32]
+    assert rig.drawing.times == pytest.approx([1.0, 1.05, 1.1, 1.15, 1.2, 1.25, 1.0])
+    assert rig.drawing.toggled == 1
+    assert rig.window.progress[-2:] == ["Filming… 100 %", ""]
+    rig.send("movie", time=1.9)
+    assert rig.drawing.times[7] == pytest.approx(1.7)  # so that it is as long as others
+
+
+@pytest.mark.usefixtures("_short_movie")
+def test_a_movie_is_cancelled_by_the_user_and_by_a_new_run(rig: Rig) -> None:
+    rig.client.before_picture = rig.transfers.stop
+    rig.send("movie")
+    assert rig.window.said[-1] == ("Nothing was downloaded", "The movie was cancelled.")
+
+    def other_run() -> None:
+        rig.drawing.shown = make_run()
+
+    rig.client.before_picture = other_run
+    rig.send("movie")
+    assert "The run changed" in rig.window.said[-1][1]
+    assert rig.client.sent == {}
+    assert rig.drawing.times[-1] == 1.0
+    assert rig.drawing.errors == []
+
+
+def test_one_file_is_made_at_a_time(rig: Rig) -> None:
+    go_on = threading.Event()
+    rig.client.before_picture = lambda: go_on.wait(PATIENCE)
+    rig.transfers.send("picture", rig.download)
+    rig.transfers.send("yaml", rig.download)
+    assert rig.window.titles == ["One at a time"]
+    go_on.set()
+    rig.wait()
+    assert [name[-4:] for name in rig.client.sent] == [".png"]
+    rig.transfers.close()
+
+
+def test_what_a_drive_gives_to_take_home(rig: Rig) -> None:
+    clock = Clock()
+    driver = Driver(FASTER.config(), clock)
+    for _ in range(5):
+        clock.now += 0.1
+        state = driver.frame(1.0)
+    drive = {"run": state.past, "drive": state}
+    for what in AT_REST:
+        rig.send(what, **drive)
+        assert rig.window.said[-1] == ("Nothing was downloaded", PAUSE_FIRST)
+    rig.send("run.npz", **drive)
+    assert rig.window.said[-1][1] == NO_RUN
+    assert rig.client.sent == {}
+    assert rig.send("run.csv", **drive)[0] == "paper-vehicle_speed-22-km-h_drive-0-0-s.csv"
+    state = driver.stand()
+    stood = replace(rig.download, run=state.past, drive=state)
+    assert stood.refusal.keys() == {"run.npz"}
+    assert stood.title == "Paper vehicle: Speed 15 → 22 km/h, drive 0–0 s"
+
+
+# ── In ──
+
+
+def test_an_uploaded_configuration_is_used_or_its_faults_are_shown(rig: Rig) -> None:
+    rig.transfers.take_configuration("tank.yaml", b"name: My tank\ndrive: {speed_kmh: 40}\n")
+    assert rig.workspace.calls == [("use_configuration", Config(name="My tank").replace({"drive.speed_kmh": 40}))]
+    rig.transfers.take_configuration("bad.yaml", b"drive: {speed_kmh: 4000}\nroads: {}\n")
+    title, faults = rig.window.faults[-1]
+    assert title == "bad.yaml cannot be used"
+    assert len(faults.faults) == 2
+    assert len(rig.workspace.calls) == 1
+
+
+def test_an_uploaded_profile_becomes_the_road_or_its_faults_are_shown(rig: Rig) -> None:
+    rig.transfers.take_profile("good.csv", b"x,y\n0,0\n1,0.1\n3,0\n")
+    rig.wait()
+    ((name, changes_of),) = rig.workspace.calls
+    assert name == "change_road"
+    assert changes_of(PAPER)["road.type"] == "profile"
+    assert rig.window.said == [("Another road", "good.csv: 3 points, 3 m long, 0.1 m high.")]
+    rig.transfers.take_profile("bad.csv", b"x,y\n0,0\n1,high\n")
+    rig.wait()
+    assert "'high' is no number" in str(rig.window.faults[-1][1])
+    assert len(rig.workspace.calls) == 1
+
+
+def test_an_uploaded_run_becomes_the_baseline_or_is_refused_with_a_word(rig: Rig) -> None:
+    rig.transfers.take_run("mine.npz", rig.run.to_bytes(".npz"))
+    rig.wait()
+    ((name, run, title),) = rig.workspace.calls
+    assert (name, run.config, title) == ("take_in", FASTER.config(), "mine")
+    rig.transfers.take_run("bad.npz", b"PK\x03\x04 nonsense")
+    rig.wait()
+    assert rig.window.titles == ["No run"]
+    assert len(rig.workspace.calls) == 1
+
+
+# ── What the browser remembers ──
+
+
+@pytest.mark.parametrize("stored", ["", "nonsense", "null", None])
+def test_what_is_no_state_is_left_alone(rig: Rig, stored: str | None) -> None:
+    if stored is not None:
+        rig.client.local_storage.items[STORED] = stored
+    rig.transfers.recollect()
+    rig.wait()
+    assert rig.workspace.calls == [("restore", None)]
+
+
+def test_the_browsers_state_is_restored_and_a_mute_browser_has_none(rig: Rig) -> None:
+    rig.transfers.remember(state_text(PAPER, FASTER, [], [], None, dark=True))
+    rig.transfers.recollect()
+    rig.wait()
+    ((name, state),) = rig.workspace.calls
+    assert (name, state.request.config(), state.dark) == ("restore", FASTER.config(), True)
+    rig.client.local_storage.mute = True
+    rig.transfers.recollect()
+    rig.wait()
+    assert rig.workspace.calls[-1] == ("restore", None)
+
+
+def test_a_missing_run_is_made_again_once_at_a_time_and_where_it_cannot_the_workspace_is_told() -> None:
+    go_on = threading.Event()
+    made: list[Config] = []
+
+    def simulate(config: Config, **how: Any) -> Trajectory:
+        made.append(config)
+        go_on.wait(PATIENCE)
+        if config == PAPER:
+            raise NoEquilibriumError("it does not stand")
+        return simulate_at_once(config, **how)
+
+    rig = Rig(simulate)
+    rig.transfers.run_again(FASTER.config())
+    rig.transfers.run_again(FASTER.config())
+    go_on.set()
+    rig.wait()
+    assert made == [FASTER.config()]
+    name, config, run = rig.workspace.calls[-1]
+    assert (name, config, run.config) == ("made_again", FASTER.config(), FASTER.config())
+    rig.transfers.run_again(PAPER)
+    rig.wait()
+    assert rig.workspace.calls[-1] == ("made_again", PAPER, None)
+    assert [type(error) for error in rig.drawing.errors] == [NoEquilibriumError]
+
+
+# ── With a tab ──
 
 
 @pytest.fixture
@@ -91,81 +410,41 @@ def html(tab: Tab, mark: str) -> str:
     return next((text for text in texts if f'class="{mark}"' in text), "")
 
 
-def test_data_is_named_after_preset_and_change_and_holds_the_run(tab: Tab) -> None:
-    tab.use("Data", "YAML")
-    name, content = download(tab, ".yaml")
-    assert name == "paper-vehicle_speed-22-km-h.yaml"
-    assert parse_config(content.decode()) == PAPER.replace({"drive.speed_kmh": 22})
+def test_the_run_is_downloaded(tab: Tab) -> None:
     tab.use("Data", "NPZ")
     name, content = download(tab, ".npz")
     assert name == "paper-vehicle_speed-22-km-h.npz"
     assert Trajectory.load(io.BytesIO(content), name).config.drive.speed_kmh == 22
-    tab.use("Data", "CSV")
-    assert download(tab, ".csv")[1].startswith(b"t [s],")
 
 
-def test_a_figure_is_made_with_the_scene_of_the_page(tab: Tab) -> None:
+def test_a_figure_is_made_with_the_view_of_the_page(tab: Tab) -> None:
     tab.use("Figure", "SVG")
-    wait_for(lambda: answer_renders(tab), "a picture of the scene")
-    name, content = download(tab, ".svg")
-    assert name == "paper-vehicle_speed-22-km-h_figure.svg"
-    assert b"<svg" in content
+    wait_for(lambda: answer_renders(tab), "a picture of the view")
+    assert b"<svg" in download(tab, ".svg")[1]
 
 
-def test_a_transparent_picture_has_neither_sky_nor_ground(explore: Any, open_tab: Any) -> None:
-    explorer = explore()
-    tab: Tab = open_tab(explorer)
-    wait_for(lambda: tab.shows_run(1))
-    scene: Any = explorer.sessions[0]._window.scene
-    tab.use("Transparent", True)
-    tab.press("Screenshot")
-    wait_for(lambda: [m for m in tuple(tab.messages) if m["type"] == "GetRenderRequestMessage"], "a request")
-    assert not scene.show_surroundings
-    answer_renders(tab)
-    assert Image.open(io.BytesIO(download(tab, ".png")[1])).mode == "RGBA"
-    wait_for(lambda: scene.show_surroundings, "sky and ground to come back")
-
-
-def test_a_movie_films_the_run_and_playback_goes_on(
-    explore: Any, open_tab: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_movie_is_filmed_from_the_page(explore: Any, open_tab: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("app.session.transfers.MOVIE_LENGTH", 0.3)
     monkeypatch.setattr("app.files.pictures.MOVIE_SIZE", (64, 36))
     explorer = explore()
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
-    scene: Any = explorer.sessions[0]._window.scene
+    view: Any = explorer.sessions[0]._window.view
     tab.use("Time, s", 1.0)
-    wait_for(lambda: scene.times[-1:] == [1.0])
+    wait_for(lambda: view.times[-1:] == [1.0])
     tab.use("In motion", "Movie")
     count = 0
     times = []
     while count < 6:
         wait_for(lambda count=count: renders(tab) > count, "a request")
-        times.append(scene.times[-1])
+        times.append(view.times[-1])
         count = answer_renders(tab, count)
     assert times == pytest.approx([1.0, 1.05, 1.1, 1.15, 1.2, 1.25])
     name, content = download(tab, ".mp4")
     assert name == "paper-vehicle.mp4"
     assert b"ftyp" in content[:32]
-    wait_for(lambda: scene.times[-1] == 1.0, "the time that was shown before")
+    wait_for(lambda: view.times[-1] == 1.0, "the time that was shown before")
     assert [n for n in tab.notifications if n["title"] == "One moment"]
-
-
-def test_a_movie_is_cancelled_by_the_user_and_by_a_new_run(tab: Tab) -> None:
-    for act in (lambda: tab.use("In motion", "Cancel"), lambda: tab.use("Speed, km/h", 33)):
-        before = len(tab.notifications)
-        count = answer_renders(tab)
-        tab.use("In motion", "Movie")
-        wait_for(lambda count=count: renders(tab) > count, "a request")
-        act()
-        time.sleep(0.2)
-        answer_renders(tab, count)
-        wait_for(
-            lambda before=before: [n for n in tab.notifications[before:] if n["title"] == "Nothing was downloaded"],
-            "a word",
-        )
-        wait_for(lambda: trackride_threads() == {"trackride-runner", "trackride-view"})
 
 
 def test_an_uploaded_configuration_is_run_and_can_be_undone(tab: Tab) -> None:
@@ -211,87 +490,9 @@ def test_an_uploaded_run_becomes_the_baseline(explore: Any, open_tab: Any) -> No
     explorer = explore()
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
-    scene: Any = explorer.sessions[0]._window.scene
+    view: Any = explorer.sessions[0]._window.view
     run = make_run(PAPER.replace({"drive.speed_kmh": 44}))
     upload(tab, "Open a run as baseline", "mine.npz", run.to_bytes(".npz"))
-    wait_for(lambda: scene.ghosts and scene.ghosts[-1], "the ghost")
-    assert scene.ghosts[-1].config.drive.speed_kmh == 44
+    wait_for(lambda: view.ghosts and view.ghosts[-1], "the ghost")
+    assert view.ghosts[-1].config.drive.speed_kmh == 44
     wait_for(lambda: "mine" in html(tab, "trackride-compared"))
-    upload(tab, "Open a run as baseline", "<b>.npz", b"PK\x03\x04 nonsense")
-    wait_for(lambda: [n for n in tab.notifications if n["title"] == "No run"], "a message")
-    assert scene.ghosts[-1].config.drive.speed_kmh == 44
-
-
-def test_files_of_any_content_lead_to_a_message(monkeypatch: pytest.MonkeyPatch) -> None:
-    run = make_run(samples=3)
-    good = run.to_bytes(".npz")
-    assert np.array_equal(run_from("a.npz", good).normal_load, run.normal_load)
-    for content in (b"", b"\0" * 100, good[:-100], good[: len(good) // 2], b"PK\x05\x06" + bytes(18)):
-        with pytest.raises(ValueError, match="a\\.npz"):
-            run_from("a.npz", content)
-    monkeypatch.setattr("app.files.uploads.RUN_LIMIT", 2e6)
-    with pytest.raises(ValueError, match="larger than 2 MB"):
-        run_from("a.npz", bytes(2_000_001))
-    monkeypatch.setattr("app.files.uploads.UNPACKED_LIMIT", 5e6)
-    bomb = io.BytesIO()
-    with zipfile.ZipFile(bomb, "w", zipfile.ZIP_DEFLATED) as archive, archive.open("q.npy", "w") as file:
-        file.write(bytes(6_000_000))
-    with pytest.raises(ValueError, match="more than 5 MB"):
-        run_from("a.npz", bomb.getvalue())
-    for content in (b"\xff\xfe", b"a" * (SIZE_LIMIT + 1), b"[", b"- 1"):
-        with pytest.raises(ConfigError):
-            configuration("a.yaml", content)
-
-
-def test_an_error_in_a_job_is_told_and_the_next_one_begins(monkeypatch: pytest.MonkeyPatch) -> None:
-    errors: list[Exception] = []
-    errands = app.session.background.Errands(errors.append)
-    assert errands.start(lambda: 1 / 0)
-    wait_for(lambda: errors and not errands.busy)
-    done: list[bool] = []
-    assert errands.start(lambda: wait_for(errands.stopped) and done.append(True))
-    assert not errands.start(lambda: None)
-    errands.close()
-    assert done == [True]
-
-
-def test_the_table_of_figures() -> None:
-    run, other = make_run(), make_run(PAPER.replace({"drive.speed_kmh": 30, "vehicle.road_wheels.count": 4}))
-    table = comparison_table(comparison(run, other), compared=True)
-    words = re.sub("<[^>]*>", " ", table).split()
-    assert words.count("baseline") == 1 + 2 + 2 + 1
-    assert "Whole" in words
-    rows = re.findall("<tr>(.*?)</tr>", table)
-    assert all(len(re.findall("<t[dh]", row)) in (2, 3, 4, 7) for row in rows)
-    assert sum(row.startswith("<td>R5") for row in rows) == 3  # the baseline has no such wheel
-    assert "baseline" not in comparison_table(comparison(run, None), compared=False)
-
-
-@pytest.mark.parametrize(
-    ("value", "resolution", "text"),
-    [
-        (None, 0, "–"),
-        (0.0, 0, "0"),
-        (0.0912, 0, "0.0912"),
-        (1.346, 0, "1.35"),
-        (18.74, 0, "18.7"),
-        (182.7, 0, "183"),
-        (0.00001, 0, "0.0000"),
-        (0.09, 0.005, "0.090"),
-        (0.3, 0.1, "0.3"),
-        (1.235, 0.005, "1.24"),
-        (4.0, 1.0, "4"),
-    ],
-)
-def test_figures_have_three_digits_and_none_that_nobody_measured(
-    value: float | None, resolution: float, text: str
-) -> None:
-    assert figure_text(value, resolution) == text
-
-
-@pytest.mark.parametrize(
-    ("change", "text"),
-    [(None, "–"), (13.3, "+13 %"), (-1.147, "−1.1 %"), (0.01, "0 %"), (-0.04, "0 %"), (-9.96, "−10 %")],
-)
-def test_changes_have_their_sign(change: float | None, text: str) -> None:
-    assert change_text(change) == text

@@ -1,31 +1,400 @@
-"""Undo, runs, baseline and presets in a tab, over viser's own protocol."""
+"""Undo, runs, baseline and presets: what the workspace shows and requests, by a clock that the test sets.
+
+The last tests go through a tab, over viser's own protocol.
+"""
 
 from __future__ import annotations
 
-import json
 import re
-import time
 from typing import Any
 
 import numpy as np
 import pytest
 
 import app.session.workspace
-from app.runs.history import Runs
-from app.runs.runner import Wish
-from app.runs.storage import state_text
+from app.runs.history import REST, Runs
+from app.runs.request import Finished, Request, first_request
+from app.runs.storage import State, state_from, state_text
+from app.session.workspace import CALM, COMPARE_EVERY, Workspace
 from model.config.config import Config, load_config
-from model.dynamics.equilibrium import NoEquilibriumError
 from model.simulation.trajectory import Trajectory
 from tests.app.conftest import Tab, make_run, simulate_at_once, wait_for
+from tests.app.session.conftest import FakeRunner, FakeWindow
 
-SPEED, SPEED_KEY = "Speed, km/h", "drive.speed_kmh"
+PAPER, HALF_ROUND = load_config("paper"), load_config("half_round")
+PRESETS = {"paper": PAPER, "half_round": HALF_ROUND}
+SPEED, SPEED_KEY, AMPLITUDE_KEY = "Speed, km/h", "drive.speed_kmh", "road.amplitude"
 
 
-@pytest.fixture(autouse=True)
-def _no_long_rest(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(app.session.workspace, "REST", 0.15)
-    monkeypatch.setattr(app.runs.history, "REST", 0.15)
+class Visit:
+    """What a user does at a workspace, and the time that passes meanwhile."""
+
+    def __init__(self, config: Config = PAPER, preset: str = "paper", state: State | None = None) -> None:
+        self.now = 100.0  # s
+        self.window = FakeWindow()
+        self.runner = FakeRunner(first_request(PRESETS[preset], config))
+        window, runner = self.window, self.runner
+        self.workspace = Workspace(window, runner, PRESETS)  # type: ignore[arg-type]
+        self.stored: State | None = None  # what the browser has
+        self.workspace.restore(state)
+        self.run()
+
+    @property
+    def config(self) -> Config:
+        """That is requested."""
+        return self.runner.latest.config()
+
+    def run(self) -> None:
+        """The run of the latest request comes, and the user looks at it."""
+        self.come()
+        self.rest()
+
+    def come(self) -> None:
+        """The run of the latest request comes."""
+        request = self.runner.latest
+        self.workspace.finished(Finished(request, make_run(request.config(), samples=21)), self.now)
+        self.pass_by(0.1)
+
+    def rest(self) -> None:
+        for _ in range(12):
+            self.pass_by(REST / 10)
+
+    def pass_by(self, seconds: float) -> None:
+        self.now += seconds
+        self.workspace.tick(self.now)
+        news = self.workspace.news(self.now)
+        if news is not None:
+            self.stored = state_from(news)
+
+    def change(self, key: str, value: Any) -> None:
+        """Move a slider, and look at the run."""
+        self.runner.change(lambda request: request.changed(key, value))
+        self.run()
+
+    def choose(self, preset: str) -> None:
+        base = self.workspace.presets[preset]
+        self.runner.change(lambda request: Request(base))
+        self.run()
+
+    def again(self) -> Visit:
+        """The same browser comes back later."""
+        return Visit(state=self.stored)
+
+
+@pytest.fixture
+def visit() -> Visit:
+    return Visit()
+
+
+# ── Steps ──
+
+
+def test_undo_and_redo_request_what_was_before(visit: Visit) -> None:
+    visit.change(SPEED_KEY, 20)
+    visit.change(SPEED_KEY, 30)
+    visit.workspace.go(-1)
+    assert visit.config.drive.speed_kmh == 20
+    visit.run()
+    visit.workspace.go(-1)
+    visit.run()
+    assert visit.config == PAPER
+    visit.workspace.go(-1)
+    assert visit.window.titles == ["Nothing to undo"]
+    visit.workspace.go(+2)
+    assert visit.config.drive.speed_kmh == 30
+    visit.run()
+    visit.workspace.go(+1)
+    assert visit.window.titles[-1] == "Nothing to redo"
+    visit.runner.change(lambda request: Request(request.base))
+    visit.run()
+    visit.workspace.go(-1)
+    assert visit.config.drive.speed_kmh == 30  # a reset is a step as well
+
+
+def test_undo_before_a_run_has_come_leads_back_to_what_is_shown(visit: Visit) -> None:
+    visit.change(SPEED_KEY, 20)
+    visit.runner.change(lambda request: request.changed(SPEED_KEY, 30))
+    visit.workspace.go(-1)
+    assert visit.config.drive.speed_kmh == 20
+
+
+def test_undo_leads_back_across_presets_and_shows_which(visit: Visit) -> None:
+    visit.change(SPEED_KEY, 20)
+    visit.choose("half_round")
+    assert visit.window.chosen == "half_round"
+    visit.workspace.go(-1)
+    visit.run()
+    assert visit.window.chosen == "paper"
+    assert visit.config == PAPER.replace({SPEED_KEY: 20})
+
+
+def test_a_drag_leaves_one_run_and_one_step(visit: Visit) -> None:
+    for speed in range(20, 50):
+        visit.runner.change(lambda request, speed=speed: request.changed(SPEED_KEY, speed))
+        visit.come()
+    assert visit.window.runs.rows == ["Paper vehicle"]
+    visit.rest()
+    assert visit.window.runs.rows == ["Speed 15 → 49 km/h", "Paper vehicle"]
+    visit.workspace.go(-1)
+    visit.run()
+    assert visit.config == PAPER
+    assert len(visit.window.runs.rows) == 2  # what was kept already is not kept again
+
+
+# ── Runs and baseline ──
+
+
+def test_a_run_is_kept_once_the_user_has_rested_on_it_and_not_while_a_newer_one_is_on_its_way(visit: Visit) -> None:
+    visit.runner.change(lambda request: request.changed(SPEED_KEY, 20))
+    visit.come()
+    visit.runner.change(lambda request: request.changed(SPEED_KEY, 30))
+    visit.rest()
+    assert visit.window.runs.rows == ["Paper vehicle"]
+    visit.run()
+    assert visit.window.runs.rows == ["Speed 15 → 30 km/h", "Paper vehicle"]
+
+
+def test_kept_runs_are_bounded(visit: Visit, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(app.runs.history, "RUNS", 5)
+    for speed in range(20, 28):
+        visit.change(SPEED_KEY, speed)
+        assert visit.window.runs.rows[0] == f"Speed 15 → {speed} km/h"
+    assert len(visit.window.runs.rows) == 5
+    assert "Paper vehicle" not in visit.window.runs.rows
+
+
+def test_runs_are_recalled_compared_renamed_and_deleted(visit: Visit) -> None:
+    runs, workspace = visit.window.runs, visit.workspace
+    visit.change(SPEED_KEY, 20)
+    visit.change(AMPLITUDE_KEY, 0.2)
+    first, second, third = "Paper vehicle", "Speed 15 → 20 km/h", "Speed 15 → 20 km/h, Amplitude 100 → 200 mm"
+    assert runs.rows == [third, second, first]
+    assert runs.name == third
+    workspace.recall(runs.numbered(second))
+    visit.run()
+    assert visit.config == PAPER.replace({SPEED_KEY: 20})
+    assert runs.name == second
+    workspace.rename("the quick one")
+    assert runs.rows == [third, "the quick one", first]
+    workspace.compare(runs.numbered(first))
+    assert runs.baseline is not None
+    assert runs.baseline.name == first
+    workspace.delete(runs.numbered(first))
+    assert runs.rows == [third, "the quick one"]
+    assert runs.baseline.name == first  # it stays to be compared with
+    workspace.delete(runs.numbered("the quick one"))
+    visit.rest()
+    assert runs.rows == [third]  # what the user has deleted does not come back by itself
+    for act in (workspace.recall, workspace.compare, workspace.delete):
+        act(99)  # a row that has just gone
+    assert visit.config == PAPER.replace({SPEED_KEY: 20})
+
+
+def test_pin_swap_and_clear(visit: Visit) -> None:
+    window, workspace = visit.window, visit.workspace
+    workspace.swap()
+    assert window.titles == ["Nothing to swap"]
+    workspace.pin()
+    assert window.titles[-1] == "Baseline pinned"
+    visit.change(SPEED_KEY, 30)
+    now, baseline = window.runs.compared[-1]
+    assert (now.config.drive.speed_kmh, baseline and baseline.config) == (30, PAPER)
+    workspace.swap()
+    assert visit.config == PAPER
+    assert window.ghosts[-1] is not None
+    assert window.ghosts[-1].config.drive.speed_kmh == 30
+    visit.run()
+    assert window.runs.compared[-1][1] is window.ghosts[-1]
+    workspace.clear_baseline()
+    assert window.ghosts[-1] is None
+    visit.rest()
+    assert window.runs.compared[-1][1] is None
+
+
+def test_a_renamed_baseline_is_called_so_and_a_run_from_outside_becomes_the_baseline(visit: Visit) -> None:
+    visit.workspace.pin()
+    visit.workspace.rename("mine")
+    assert visit.window.runs.baseline is not None
+    assert visit.window.runs.baseline.name == "mine"
+    run = make_run(PAPER.replace({SPEED_KEY: 44}))
+    visit.workspace.take_in(run, "theirs")
+    assert visit.workspace.baseline is run
+    assert visit.window.runs.rows == ["theirs", "mine"]
+
+
+def test_during_a_drag_the_figures_wait_unless_their_tab_is_seen(visit: Visit) -> None:
+    runs = visit.window.runs
+
+    def drag(steps: int) -> int:
+        before = len(runs.compared)
+        for speed in range(steps):
+            visit.runner.change(lambda request, speed=speed: request.changed(SPEED_KEY, 20 + speed))
+            visit.come()  # ten a second
+        return len(runs.compared) - before
+
+    assert drag(30) == 0
+    visit.pass_by(CALM)
+    assert runs.compared[-1][0].config.drive.speed_kmh == 49
+    visit.window.runs_in_front = True
+    assert drag(30) == pytest.approx(3.0 / COMPARE_EVERY, abs=3)
+
+
+def test_during_a_drive_the_figures_are_said_to_be_those_of_the_last_run(visit: Visit) -> None:
+    runs = visit.window.runs
+    visit.workspace.driven(visit.runner.latest, visit.now)
+    assert (runs.before_drive, runs.now) == ("Paper vehicle", None)
+    visit.workspace.pin()
+    visit.workspace.rename("what?")
+    visit.workspace.save_preset("what?")
+    assert visit.window.titles == ["Only a run can be pinned"]
+    assert runs.rows == ["Paper vehicle"]
+    visit.run()
+    assert (runs.before_drive, runs.heading) == ("", "Paper vehicle")
+
+
+# ── Configurations ──
+
+
+def test_a_preset_is_saved_and_chosen_and_reset_leads_back_to_it(visit: Visit) -> None:
+    visit.change(SPEED_KEY, 20)
+    visit.workspace.save_preset("  ")
+    assert visit.window.titles == ["No name"]
+    visit.workspace.save_preset(" My  tank ")
+    visit.run()
+    assert visit.window.presets[visit.window.chosen].name == "My tank"
+    assert visit.window.presets.keys() > PRESETS.keys()
+    assert visit.runner.latest.changes == {}
+    assert visit.config.drive.speed_kmh == 20
+    visit.change(SPEED_KEY, 40)
+    visit.workspace.save_preset("My tank")  # in the place of the first
+    visit.run()
+    assert len(visit.window.presets) == len(PRESETS) + 1
+    assert visit.window.presets[visit.window.chosen].drive.speed_kmh == 40
+    visit.workspace.save_preset("x" * 200)
+    assert "at most 100" in str(visit.window.faults[-1][1])
+
+
+def test_only_so_many_own_presets_are_kept(visit: Visit, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(app.session.workspace, "PRESETS", 3)
+    for name in "abcde":
+        visit.workspace.save_preset(name)
+        visit.run()
+    assert [config.name for config in visit.workspace.presets.values()][-3:] == ["c", "d", "e"]
+
+
+def test_a_configuration_of_the_presets_name_is_a_change_of_it(visit: Visit) -> None:
+    visit.workspace.use_configuration(PAPER.replace({SPEED_KEY: 23}))
+    assert (visit.runner.latest.base, visit.runner.latest.changes) == (PAPER, {SPEED_KEY: 23})
+    other = PAPER.replace({"name": "My tank", SPEED_KEY: 40})
+    visit.workspace.use_configuration(other)
+    visit.run()
+    assert (visit.runner.latest.base, visit.window.presets[visit.window.chosen]) == (other, other)
+    visit.workspace.go(-1)
+    visit.run()
+    assert visit.window.chosen == "paper"
+
+
+def test_the_road_of_an_impossible_request_is_left_alone(visit: Visit) -> None:
+    visit.workspace.change_road(lambda config: {"road.type": "flat"})
+    assert visit.config.road.type == "flat"
+    visit.runner.change(lambda request: request.changed(SPEED_KEY, -1))
+    visit.workspace.change_road(lambda config: {"road.type": "sine"})
+    assert visit.runner.latest.changes == {"road.type": "flat", SPEED_KEY: -1}
+
+
+# ── From one visit to the next ──
+
+
+def test_parameters_and_presets_come_back(visit: Visit) -> None:
+    visit.choose("half_round")
+    visit.change(SPEED_KEY, 25)
+    visit.workspace.save_preset("Mine")
+    visit.run()
+    visit.change(SPEED_KEY, 26)
+    again = visit.again()
+    assert again.config == HALF_ROUND.replace({"name": "Mine", SPEED_KEY: 26})
+    assert again.window.presets[again.window.chosen].name == "Mine"
+    assert again.window.titles == ["Welcome back"]
+    assert again.runner.latest.base.drive.speed_kmh == 25  # where a reset leads to
+
+
+def test_runs_and_baseline_come_back_and_what_is_missing_is_made_again(visit: Visit) -> None:
+    visit.workspace.pin()
+    visit.change(SPEED_KEY, 20)
+    visit.workspace.rename("the quick one")
+    visit.change(SPEED_KEY, 30)
+    visit.workspace.delete(visit.window.runs.numbered("Paper vehicle"))
+    visit.rest()
+    again = visit.again()
+    runs = again.window.runs
+    assert runs.rows == visit.window.runs.rows == ["Speed 15 → 30 km/h", "the quick one"]
+    assert [kept.colour for kept in runs.kept] == [kept.colour for kept in visit.window.runs.kept]
+    assert runs.baseline is not None
+    assert runs.baseline.name == "Paper vehicle"
+    assert again.workspace.missing_run == PAPER
+    again.workspace.made_again(PAPER, make_run(PAPER))
+    assert again.workspace.missing_run is None
+    again.rest()
+    assert again.window.runs.compared[-1][1] is again.workspace.baseline
+    again.workspace.compare(runs.numbered("the quick one"))
+    assert again.workspace.missing_run == PAPER.replace({SPEED_KEY: 20})
+
+
+def test_a_baseline_that_cannot_be_made_again_is_given_up_with_a_word(visit: Visit) -> None:
+    visit.workspace.take_in(make_run(PAPER.replace({SPEED_KEY: 44})), "fast")
+    visit.rest()
+    again = visit.again()
+    assert again.workspace.missing_run is not None
+    again.workspace.made_again(again.workspace.missing_run, None)
+    assert again.window.titles[-1] == "No baseline"
+    assert again.workspace.missing_run is None
+    again.rest()
+    assert again.stored is not None
+    assert again.stored.baseline is None
+
+
+def test_nothing_is_stored_before_the_browser_has_told_what_it_has() -> None:
+    window, runner = FakeWindow(), FakeRunner(Request(PAPER))
+    workspace = Workspace(window, runner, PRESETS)  # type: ignore[arg-type]
+    workspace.finished(Finished(runner.latest, make_run()), 100.0)
+    workspace.tick(110.0)
+    workspace.set_dark(True)
+    assert workspace.news(120.0) is None
+    workspace.restore(None)
+    assert workspace.news(120.0) is not None
+    assert workspace.news(130.0) is None  # once
+
+
+def test_what_the_explorer_was_started_with_goes_before_the_last_visit() -> None:
+    request = Request(PAPER).changed(SPEED_KEY, 33)
+    kept = Runs().keep(request, make_run(request.config()))
+    stored = state_text(PAPER, request, [PAPER.replace({"name": "Mine"})], [kept], kept, dark=False)
+    visit = Visit(HALF_ROUND, "half_round", state_from(stored))
+    assert "Mine" in {config.name for config in visit.window.presets.values()}
+    assert "Speed 15 → 33 km/h" in visit.window.runs.rows
+    assert (visit.window.chosen, visit.config) == ("half_round", HALF_ROUND)
+    assert visit.window.runs.baseline is None
+
+
+def test_the_browsers_look_is_taken_until_another_is_chosen(visit: Visit) -> None:
+    visit.workspace.prefer_dark(True)
+    assert visit.window.dark
+    visit.change(SPEED_KEY, 20)
+    assert visit.stored is not None
+    assert visit.stored.dark is None
+    visit.workspace.set_dark(False)
+    visit.rest()
+    assert not visit.window.dark
+    assert visit.stored.dark is False
+    again = visit.again()
+    again.workspace.prefer_dark(True)
+    assert not again.window.dark
+    again.workspace.set_dark(True)
+    again.rest()
+    assert again.again().window.dark
+
+
+# ── With a tab ──
 
 
 def rows(tab: Tab) -> list[str]:
@@ -40,184 +409,65 @@ def html(tab: Tab, mark: str) -> str:
     return next((text for text in texts if f'class="{mark}"' in text), "")
 
 
-def style(tab: Tab) -> list[str]:
-    """Colours of the rows of runs, in the order of their rules."""
-    rules = next(w["props"]["content"] for w in tuple(tab.widgets.values()) if "trackride-runs" in str(w["props"]))
-    return re.findall(r"::before { color: (#\w+)", rules)
-
-
 def text_of(markup: str) -> str:
     return " ".join(re.sub("<[^>]*>", " ", markup).split())
 
 
-def change(tab: Tab, label: str, value: Any, run: int) -> None:
-    tab.use(label, value)
-    wait_for(lambda: tab.shows_run(run), f"run {run}")
-    time.sleep(0.3)
+def stored_speeds(storage: dict[str, str]) -> list[float]:
+    """Of the runs that the browser has stored, km/h."""
+    return [kept.config.drive.speed_kmh for kept in state_from(storage["trackride"]).runs]
 
 
 @pytest.fixture
-def tab(explore: Any, open_tab: Any) -> Tab:
-    opened: Tab = open_tab(explore())
-    wait_for(lambda: opened.shows_run(1), "run 1")
-    wait_for(lambda: rows(opened) == ["Paper vehicle"], "the first run to be kept")
-    return opened
+def _quick_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A moment is a rest, so that no test waits for one."""
+    monkeypatch.setattr(app.session.workspace, "REST", 0.05)
+    monkeypatch.setattr(app.runs.history, "REST", 0.05)
 
 
-def test_undo_and_redo_move_the_controls_and_run_again(tab: Tab) -> None:
-    change(tab, SPEED, 20, 2)
-    change(tab, SPEED, 30, 3)
+def test_buttons_and_keys_undo_and_redo(explore: Any, open_tab: Any) -> None:
+    tab: Tab = open_tab(explore())
+    wait_for(lambda: tab.shows_run(1), "run 1")
+    tab.use(SPEED, 20)
+    wait_for(lambda: tab.shows_run(2), "run 2")
+    tab.use("Amplitude, mm", 200)
+    wait_for(lambda: tab.shows_run(3), "run 3")
     tab.use("Parameters", "Undo")
-    wait_for(lambda: tab.shows_run(4))
-    wait_for(lambda: tab.widget(SPEED)["value"] == 20, "the slider to follow")
+    wait_for(lambda: tab.shows_run(4), "the run before")
     tab.press("Undo the last change")
-    wait_for(lambda: tab.widget(SPEED)["value"] == 15)
+    wait_for(lambda: tab.shows_run(5), "the first run again")
     tab.press("Redo the change")
     tab.press("Redo the change")  # both count, however quickly they come
-    wait_for(lambda: tab.widget(SPEED)["value"] == 30)
+    wait_for(lambda: tab.widget(SPEED)["value"] == 20 and tab.widget("Amplitude, mm")["value"] == 200, "the sliders")
     tab.use("Parameters", "Redo")
     wait_for(lambda: [n for n in tab.notifications if n["title"] == "Nothing to redo"])
-    tab.use("Parameters", "Reset")
-    wait_for(lambda: tab.widget(SPEED)["value"] == 15)
-    time.sleep(0.3)
-    tab.use("Parameters", "Undo")
-    wait_for(lambda: tab.widget(SPEED)["value"] == 30)
-
-
-def test_undo_leads_back_across_presets_and_shows_which(tab: Tab) -> None:
-    change(tab, SPEED, 20, 2)
-    change(tab, "Preset", "Half-round obstacle", 3)
-    tab.use("Parameters", "Undo")
-    wait_for(lambda: tab.widget("Preset")["value"] == "Paper vehicle")
-    wait_for(lambda: tab.widget(SPEED)["value"] == 20)
-
-
-def test_during_a_drive_the_figures_are_said_to_be_those_of_the_last_run(tab: Tab) -> None:
-    wait_for(lambda: "Now Paper vehicle" in text_of(html(tab, "trackride-compared")).replace("● ", ""))
-    tab.use("Mode", "○ Drive")
-    wait_for(lambda: "Last run Paper vehicle" in text_of(html(tab, "trackride-compared")), "the heading of a drive")
-    tab.use("Mode", "○ Run")
-    wait_for(lambda: "Now ● Paper vehicle" in text_of(html(tab, "trackride-compared")), "the run")
-
-
-def test_a_drag_leaves_one_run_and_one_step(tab: Tab, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(app.session.workspace, "REST", 1.0)
-    monkeypatch.setattr(app.runs.history, "REST", 1.0)
-    slider = tab.find(SPEED)
-    for step in range(30):
-        tab.send("GuiUpdateMessage", uuid=slider, updates={"value": 20 + step})
-        time.sleep(0.01)
-    wait_for(lambda: len(rows(tab)) == 2, "the run to be kept")
-    assert rows(tab) == ["Speed 15 → 49 km/h", "Paper vehicle"]
-    tab.use("Parameters", "Undo")
-    wait_for(lambda: tab.widget(SPEED)["value"] == 15)
-    time.sleep(0.3)
-    assert len(rows(tab)) == 2  # what was kept already is not kept again
 
 
 def test_a_pinned_run_stays_in_plots_scene_and_table(explore: Any, open_tab: Any) -> None:
     explorer = explore()
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
-    scene: Any = explorer.sessions[0]._window.scene
+    view: Any = explorer.sessions[0]._window.view
     tab.press("Pin this run as the baseline")
-    wait_for(lambda: scene.ghosts, "the ghost")
-    assert scene.ghosts[-1].config.drive.speed_kmh == 15
-    change(tab, SPEED, 30, 2)
+    wait_for(lambda: view.ghosts, "the ghost")
+    assert view.ghosts[-1].config.drive.speed_kmh == 15
+    tab.use(SPEED, 30)
     wait_for(lambda: "+100 %" in html(tab, "trackride-figures"), "the comparison")
     chart = tab.charts()[0]
     assert any(np.allclose(column[:-3], 15, atol=1) for column in chart["data"][1:])  # the baseline's loads
-    assert "Now ● Speed 15 → 30 km/h Baseline ● Paper vehicle" in text_of(html(tab, "trackride-compared"))
+    wait_for(lambda: "Speed 15 → 30 km/h Baseline ● Paper vehicle" in text_of(html(tab, "trackride-compared")))
     tab.use("Baseline", "Swap")
     wait_for(lambda: tab.widget(SPEED)["value"] == 15)
     wait_for(lambda: "−50 %" in html(tab, "trackride-figures"), "the comparison the other way round")
-    assert scene.ghosts[-1].config.drive.speed_kmh == 30
+    assert view.ghosts[-1].config.drive.speed_kmh == 30
     tab.use("Baseline", "Clear")
-    wait_for(lambda: scene.ghosts[-1] is None)
+    wait_for(lambda: view.ghosts[-1] is None)
     wait_for(lambda: "change" not in text_of(html(tab, "trackride-figures")))
-    tab.use("Baseline", "Swap")
-    wait_for(lambda: [n for n in tab.notifications if n["title"] == "Nothing to swap"])
+    tab.use("Mode", "○ Drive")
+    wait_for(lambda: "Last run Paper vehicle" in text_of(html(tab, "trackride-compared")), "the heading of a drive")
 
 
-def test_runs_are_recalled_compared_renamed_and_deleted(tab: Tab) -> None:
-    change(tab, SPEED, 20, 2)
-    change(tab, "Amplitude, mm", 200, 3)
-    wait_for(lambda: len(rows(tab)) == 3)
-    first, second, third = "Paper vehicle", "Speed 15 → 20 km/h", "Speed 15 → 20 km/h, Amplitude 100 → 200 mm"
-    assert rows(tab) == [third, second, first]
-    assert tab.widget("Name")["value"] == third
-    tab.use(second, "Show")
-    wait_for(lambda: tab.widget("Amplitude, mm")["value"] == 100)
-    wait_for(lambda: tab.widget("Name")["value"] == second)
-    tab.use("Name", "the <b>quick</b> one")
-    wait_for(lambda: "the <b>quick</b> one" in rows(tab))
-    wait_for(lambda: "the &lt;b&gt;quick&lt;/b&gt; one" in html(tab, "trackride-compared"), "the name, escaped")
-    tab.use(first, "Compare")
-    wait_for(lambda: "Baseline ● Paper vehicle" in text_of(html(tab, "trackride-compared")))
-    tab.use(first, "✕")
-    wait_for(lambda: first not in rows(tab))
-    assert "Baseline ● Paper vehicle" in text_of(html(tab, "trackride-compared"))  # it stays to be compared with
-    tab.use("the <b>quick</b> one", "✕")
-    wait_for(lambda: rows(tab) == [third])
-    time.sleep(0.4)
-    assert rows(tab) == [third]  # what the user has deleted does not come back by itself
-
-
-def test_runs_that_nobody_rested_on_are_not_kept_and_runs_are_bounded(
-    tab: Tab, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    bound = 5
-    monkeypatch.setattr(app.runs.history, "RUNS", bound)
-    for k in range(bound + 3):
-        tab.use(SPEED, 20 + k)
-        wait_for(lambda k=k: tab.shows_run(k + 2))
-        if k:
-            wait_for(lambda k=k: f"Speed 15 → {20 + k} km/h" in rows(tab))
-    assert len(rows(tab)) == bound
-    assert "Paper vehicle" not in rows(tab)
-
-
-def test_a_preset_is_saved_and_chosen_and_reset_leads_back_to_it(tab: Tab) -> None:
-    change(tab, SPEED, 20, 2)
-    tab.use("Preset name", "Mine")
-    tab.use("As they are", "Save preset")
-    wait_for(lambda: tab.widget("Preset")["value"] == "Mine")
-    assert "Paper vehicle" in tab.widget("Preset")["props"]["options"]
-    wait_for(lambda: tab.shows_run(3))
-    change(tab, SPEED, 40, 4)
-    tab.use("Parameters", "Reset")
-    wait_for(lambda: tab.widget(SPEED)["value"] == 20)
-    tab.use("Preset", "Paper vehicle")
-    wait_for(lambda: tab.widget(SPEED)["value"] == 15)
-    tab.use("Preset", "Mine")
-    wait_for(lambda: tab.widget(SPEED)["value"] == 20)
-    tab.use("Preset name", "x" * 200)
-    tab.use("As they are", "Save preset")
-    wait_for(lambda: "at most 100" in text_of(html(tab, "trackride-faults")), "the fault")
-
-
-def test_the_state_comes_back_with_the_browser(explore: Any, open_tab: Any) -> None:
-    explorer = explore()
-    storage: dict[str, str] = {}
-    tab: Tab = open_tab(explorer, storage=storage)
-    wait_for(lambda: tab.shows_run(1))
-    tab.use("Preset", "Half-round obstacle")
-    change(tab, SPEED, 25, 3)
-    wait_for(lambda: '"drive.speed_kmh": 25' in storage.get("trackride", ""), "the browser's storage")
-    tab.use("Preset name", "Mine")
-    tab.use("As they are", "Save preset")
-    wait_for(lambda: '"name": "Mine"' in storage["trackride"])
-    change(tab, SPEED, 26, 5)
-    wait_for(lambda: '"drive.speed_kmh": 26' in storage["trackride"])
-    tab.close()
-    again: Tab = open_tab(explorer, storage=storage)
-    wait_for(lambda: again.widget(SPEED)["value"] == 26, "the speed of the last visit")
-    wait_for(lambda: again.widget("Preset")["value"] == "Mine", "the preset")
-    assert again.widget("Road type")["value"] == "half round"
-    again.use("Parameters", "Reset")
-    wait_for(lambda: again.widget(SPEED)["value"] == 25)
-
-
+@pytest.mark.usefixtures("_quick_rest")
 def test_runs_and_baseline_come_back_with_the_browser(explore: Any, open_tab: Any) -> None:
     made: list[Config] = []
 
@@ -231,102 +481,34 @@ def test_runs_and_baseline_come_back_with_the_browser(explore: Any, open_tab: An
     wait_for(lambda: rows(tab) == ["Paper vehicle"])
     tab.press("Pin this run as the baseline")
     wait_for(lambda: "Baseline ● Paper vehicle" in text_of(html(tab, "trackride-compared")))
-    change(tab, SPEED, 20, 2)
+    tab.use(SPEED, 20)
     wait_for(lambda: len(rows(tab)) == 2)
     tab.use("Name", "the <b>quick</b> one")
-    wait_for(lambda: "quick" in storage.get("trackride", ""), "the browser's storage")
-    change(tab, SPEED, 30, 3)
+    wait_for(lambda: "the &lt;b&gt;quick&lt;/b&gt; one" in html(tab, "trackride-compared"), "the name, escaped")
+    tab.use(SPEED, 30)
     wait_for(lambda: len(rows(tab)) == 3)
     tab.use("Paper vehicle", "✕")
-    wait_for(lambda: len(rows(tab)) == 2)
-    wait_for(lambda: len(json.loads(storage["trackride"])["runs"]) == 2, "the browser's storage")
-    assert rows(tab) == ["Speed 15 → 30 km/h", "the <b>quick</b> one"]
-    colours = style(tab)
+    wait_for(lambda: rows(tab) == ["Speed 15 → 30 km/h", "the <b>quick</b> one"])
+    wait_for(lambda: stored_speeds(storage) == [20, 30], "the browser's storage")
     tab.close()
     made.clear()
 
     again: Tab = open_tab(explorer, storage=storage)
     wait_for(lambda: [row for row in rows(again) if row != "Paper vehicle"] == rows(tab), "the runs of the last visit")
-    wait_for(lambda: set(colours) <= set(style(again)), "their colours")
     wait_for(lambda: "Baseline ● Paper vehicle" in text_of(html(again, "trackride-compared")))
     wait_for(lambda: "+100 %" in html(again, "trackride-figures"), "the comparison with the baseline")
-    scene: Any = explorer.sessions[-1]._window.scene
-    assert scene.ghosts[-1].config.drive.speed_kmh == 15
+    wait_for(lambda: again.widget(SPEED)["value"] == 30, "the speed of the last visit")
+    view: Any = explorer.sessions[-1]._window.view
+    assert view.ghosts[-1].config.drive.speed_kmh == 15
     assert 20 not in {config.drive.speed_kmh for config in made}  # nobody has asked for that run yet
     again.use("the <b>quick</b> one", "Compare")
-    wait_for(lambda: scene.ghosts[-1] and scene.ghosts[-1].config.drive.speed_kmh == 20, "the run, made again")
+    wait_for(lambda: view.ghosts[-1] and view.ghosts[-1].config.drive.speed_kmh == 20, "the run, made again")
 
 
-def test_a_baseline_that_cannot_be_made_again_is_given_up_with_a_word(explore: Any, open_tab: Any) -> None:
-    def simulate(config: Config, **how: Any) -> Trajectory:
-        if config.drive.speed_kmh == 44:
-            raise NoEquilibriumError("it does not stand")
-        return simulate_at_once(config, **how)
-
-    paper = load_config("paper")
-    wish = Wish(paper).changed(SPEED_KEY, 44)
-    kept = Runs().keep(wish, make_run(wish.config()))
-    stored = state_text(paper, Wish(paper), [], [], kept, dark=False)
-    tab: Tab = open_tab(explore(run=simulate), storage={"trackride": stored})
-    wait_for(lambda: [n for n in tab.notifications if n["title"] == "No baseline"], "a word")
-    wait_for(lambda: "No baseline" in text_of(html(tab, "trackride-compared")))
-    wait_for(lambda: json.loads(tab.storage["trackride"])["baseline"] is None)
-
-
-def test_nothing_is_stored_before_the_browser_has_told_what_it_has(explore: Any, open_tab: Any) -> None:
-    storage = {"trackride": "old"}
-    tab: Tab = open_tab(explore(), storage=storage, mute=True)
-    wait_for(lambda: rows(tab) == ["Paper vehicle"], "a run to be kept")
-    time.sleep(0.4)
-    assert storage == {"trackride": "old"}
-
-
-def test_the_look_comes_back(explore: Any, open_tab: Any) -> None:
-    explorer, storage = explore(), {}
-    tab: Tab = open_tab(explorer, storage=storage)
-    wait_for(lambda: tab.shows_run(1))
-    wait_for(lambda: tab.widget("Dark")["value"] is False)
-    tab.use("Dark", True)
-    wait_for(lambda: json.loads(storage["trackride"])["dark"], "the look to be stored")
-    again: Tab = open_tab(explorer, storage=storage)
-    wait_for(lambda: again.widget("Dark")["value"] is True, "the look of the last visit")
-    wait_for(lambda: explorer.sessions[-1]._window.scene.dark)
-
-
-def test_the_browsers_look_is_taken_until_another_is_chosen(explore: Any, open_tab: Any) -> None:
-    explorer, storage = explore(), {}
-    tab: Tab = open_tab(explorer, storage=storage)
+def test_the_look_reaches_page_and_view(explore: Any, open_tab: Any) -> None:
+    explorer = explore()
+    tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1) and tab.widget("Dark")["value"] is False)
     tab.use("Dark pages", True)
     wait_for(lambda: tab.widget("Dark")["value"] is True, "the browser's look")
-    wait_for(lambda: explorer.sessions[-1]._window.scene.dark)
-    wait_for(lambda: json.loads(storage["trackride"])["dark"] is None)
-    tab.use("Dark", False)
-    wait_for(lambda: json.loads(storage["trackride"])["dark"] is False, "the choice to be stored")
-    again: Tab = open_tab(explorer, storage=storage)
-    again.use("Dark pages", True)
-    wait_for(lambda: again.shows_run(1) and explorer.sessions[-1]._desk._prefers_dark)
-    wait_for(lambda: rows(again) == ["Paper vehicle"])
-    assert again.widget("Dark")["value"] is False
-
-
-@pytest.mark.parametrize("stored", ["", "nonsense", "null", "{}", '{"presets": [1], "wish": 2, "runs": [{}]}'])
-def test_what_is_no_state_is_left_alone(explore: Any, open_tab: Any, stored: str) -> None:
-    tab: Tab = open_tab(explore(), storage={"trackride": stored})
-    wait_for(lambda: tab.shows_run(1))
-    wait_for(lambda: rows(tab) == ["Paper vehicle"])
-    assert tab.shows_run(1)
-    assert tab.notifications == []
-
-
-def test_what_the_explorer_was_started_with_goes_before_the_last_visit(explore: Any, open_tab: Any) -> None:
-    paper = load_config("paper")
-    wish = Wish(paper).changed(SPEED_KEY, 33)
-    kept = Runs().keep(wish, make_run(wish.config()))
-    stored = state_text(paper, wish, [paper.replace({"name": "Mine"})], [kept], kept, dark=False)
-    tab: Tab = open_tab(explore(load_config("half_round"), "half_round"), storage={"trackride": stored})
-    wait_for(lambda: "Mine" in tab.widget("Preset")["props"]["options"], "the saved preset")
-    wait_for(lambda: "Speed 15 → 33 km/h" in rows(tab), "the kept run")
-    assert tab.widget("Preset")["value"] == "Half-round obstacle"
-    assert tab.widget(SPEED)["value"] == load_config("half_round").drive.speed_kmh
-    assert "No baseline" in text_of(html(tab, "trackride-compared"))
+    wait_for(lambda: explorer.sessions[-1]._window.view.dark)

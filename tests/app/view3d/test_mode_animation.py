@@ -13,20 +13,20 @@ from app.view3d.mode_animation import EXCURSION, PERIOD, ModeShow
 from model.analysis.modes import vehicle_modes
 from model.config.config import load_config
 from model.simulation.trajectory import Trajectory
-from tests.app.conftest import FakeScene, Tab, wait_for
+from tests.app.conftest import FakeView, Tab, wait_for
 
 PAPER = load_config("paper")
 SHOW, BOUNCE = "Show in 3-D", "2 Bounce, 1.55 Hz"
 
 
 @pytest.fixture
-def shown(explore: Any, open_tab: Any) -> tuple[Tab, FakeScene]:
+def shown(explore: Any, open_tab: Any) -> tuple[Tab, FakeView]:
     """A tab whose modes can be chosen, and its 3-D view."""
     explorer = explore()
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
     wait_for(lambda: BOUNCE in tab.widget(SHOW)["props"]["options"], "the modes")
-    return tab, explorer.sessions[0]._window.scene
+    return tab, explorer.sessions[0]._window.view
 
 
 def is_bounce(run: Trajectory) -> bool:
@@ -34,13 +34,13 @@ def is_bounce(run: Trajectory) -> bool:
     return run.config.road.type == "flat" and bool(np.ptp(run.q[:, 0, 1]) > 0.05)
 
 
-def show_bounce(tab: Tab, scene: FakeScene) -> None:
+def show_bounce(tab: Tab, scene: FakeView) -> None:
     tab.use(SHOW, BOUNCE)
     wait_for(lambda: is_bounce(scene.runs[-1]), "the mode")
     wait_for(lambda: "<b>Bounce</b>" in tab.status, "the status")
 
 
-def test_a_mode_swings_round_and_round_and_the_rest_pose_is_its_ghost(shown: tuple[Tab, FakeScene]) -> None:
+def test_a_mode_swings_round_and_round_and_the_rest_pose_is_its_ghost(shown: tuple[Tab, FakeView]) -> None:
     tab, scene = shown
     show_bounce(tab, scene)
     first = len(scene.times)
@@ -53,7 +53,7 @@ def test_a_mode_swings_round_and_round_and_the_rest_pose_is_its_ghost(shown: tup
     assert tab.widget("Playback")["props"]["options"][2] == "▶ Play"  # the run stands still meanwhile
 
 
-def test_what_leads_back_to_the_run(shown: tuple[Tab, FakeScene]) -> None:
+def test_what_leads_back_to_the_run(shown: tuple[Tab, FakeView]) -> None:
     tab, scene = shown
     for lead_back in (
         lambda: tab.press("Play or pause"),
@@ -71,7 +71,7 @@ def test_what_leads_back_to_the_run(shown: tuple[Tab, FakeScene]) -> None:
     assert scene.ghosts[-1] is scene.runs[-1]  # it is pinned
 
 
-def test_one_mode_after_the_other_and_none_during_a_drive(shown: tuple[Tab, FakeScene]) -> None:
+def test_one_mode_after_the_other_and_none_during_a_drive(shown: tuple[Tab, FakeView]) -> None:
     tab, scene = shown
     show_bounce(tab, scene)
     tab.use(SHOW, "1 Pitch, 1.04 Hz")
@@ -84,7 +84,7 @@ def test_one_mode_after_the_other_and_none_during_a_drive(shown: tuple[Tab, Fake
     wait_for(lambda: not tab.widget(SHOW)["props"]["disabled"], "the choice to be enabled")
 
 
-def test_other_spectra_can_be_asked_for(shown: tuple[Tab, FakeScene]) -> None:
+def test_other_spectra_can_be_asked_for(shown: tuple[Tab, FakeView]) -> None:
     tab, _ = shown
     tab.use("Spectrum", "Power density, m²/s³")
     wait_for(lambda: tab.charts()[-1]["title"] == "Vertical acceleration: power density")

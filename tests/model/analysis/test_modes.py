@@ -105,7 +105,7 @@ def test_hop_of_a_wheel_under_a_hull_that_stands_still():
     system = build_system(config)
     load = rest_pose(system)[1][0]
     # The hull, 2000 kg, goes along a little: both wheels together against it
-    ground, ground_damping = 2 * np.sqrt(system.k_n * load), system.c_n * load / system.k_n
+    ground, ground_damping = 2 * np.sqrt(system.ground.k_n * load), system.ground.c_n * load / system.ground.k_n
     wheel = m_w + m_a / 3
     M = np.array([[wheel, m_a / 6], [m_a / 6, (2000 + 2 * m_a / 3) / 2]])  # wheel, half the hull; an arm between
     K = np.array([[k + ground, -k], [-k, k]])

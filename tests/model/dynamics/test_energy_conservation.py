@@ -56,7 +56,7 @@ def energy(system: System, road: Road, s: Samples) -> np.ndarray:
     turn = s.q[:, system.spring_i, 2] - s.q[:, system.spring_j, 2]
     springs = (system.k_s / 2 * turn**2 + system.tau_0 * turn).sum(axis=1)
     z, _, _ = contacts(system, road, s)
-    ground = (system.k_n / 3 * z**3).sum(axis=1) + (system.k_t / 2 * s.xi**2).sum(axis=1)
+    ground = (system.ground.k_n / 3 * z**3).sum(axis=1) + (system.ground.k_t / 2 * s.xi**2).sum(axis=1)
     return motion + height + springs + ground
 
 
@@ -65,9 +65,9 @@ def lost_power(system: System, road: Road, s: Samples) -> np.ndarray:
     turning = s.v[:, system.spring_i, 2] - s.v[:, system.spring_j, 2]
     dampers = (system.c_s * turning**2).sum(axis=1)
     z, z_dot, p_dot = contacts(system, road, s)
-    normal = ((s.f_n - system.k_n * z**2) * z_dot).sum(axis=1)
-    xi_dot = -(system.k_t * s.xi + s.f_t) / system.c_t
-    shear = -(s.f_t * p_dot + system.k_t * s.xi * xi_dot).sum(axis=1)
+    normal = ((s.f_n - system.ground.k_n * z**2) * z_dot).sum(axis=1)
+    xi_dot = -(system.ground.k_t * s.xi + s.f_t) / system.ground.c_t
+    shear = -(s.f_t * p_dot + system.ground.k_t * s.xi * xi_dot).sum(axis=1)
     for part in (dampers, normal, shear):
         assert part.min() >= -1e-9 * max(part.max(), 1.0)
     return dampers + normal + shear
@@ -100,12 +100,12 @@ def test_energy_is_conserved_without_damping_and_friction(imaginary):
 def test_energy_is_conserved_while_wheels_stick():
     """The sheared ground gives back what it takes, but for c_t, at its smallest here."""
     system, road = prepared(FLAT.replace(UNDAMPED | UNDRIVEN | {"contact.friction": 2.0}))
-    system = system._replace(c_t=1e-3)
+    system = system._replace(ground=system.ground._replace(c_t=1e-3))
     y = pushed(system)
     y[entries(system, "v_x")] += 0.02  # everything is pushed ahead, against the wheels' spin
     s = run(system, road, y)
-    assert (np.abs(s.f_t) < system.mu * s.f_n).all()
-    assert (system.k_t / 2 * s.xi**2).sum(axis=1).max() > 0.1  # J
+    assert (np.abs(s.f_t) < system.ground.mu * s.f_n).all()
+    assert (system.ground.k_t / 2 * s.xi**2).sum(axis=1).max() > 0.1  # J
     E = energy(system, road, s)
     assert np.abs(E - E[0]).max() < 1e-4
 

@@ -72,7 +72,7 @@ def test_the_random_states_reach_every_regime():
             t, state = random_state(system, rng)
             rates = kernel_rates(system, road, t, state)
             touching = rates.f_n > 0.0
-            slipping = touching & (np.abs(rates.f_t) >= system.mu * rates.f_n * (1 - 1e-12))
+            slipping = touching & (np.abs(rates.f_t) >= system.ground.mu * rates.f_n * (1 - 1e-12))
             met["in the air"] += int((~touching).sum())
             met["sticking"] += int((touching & ~slipping).sum())
             met["slipping forwards"] += int((slipping & (rates.f_t < 0.0)).sum())

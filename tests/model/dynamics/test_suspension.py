@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from model import ConfigError, simulate
-from model.dynamics.equations import stop_torque, suspension_torques
-from model.dynamics.suspension import dissipated_power, elastic
+from model.dynamics.equations import suspension_torques
+from model.dynamics.suspension import added_torque, dissipated_power, elastic
 from model.dynamics.vehicle import System, build_system
 from tests.model.support import OPTIONS, PAPER, ROAD_SPRING, turned
 
@@ -31,14 +31,14 @@ def road_torque(system: System, u: float, u_dot: float) -> float:
 def test_an_arm_meets_its_stop_at_the_travel_given(travel):
     system = with_road(bump_travel=travel, rebound_travel=travel)
     axle = -(system.u_j[0] - system.u_i[system.n])  # from pivot to axle in the design pose
-    for u, rise in ((system.bump, travel), (system.rebound, -travel)):
+    for u, rise in ((system.stops.bump, travel), (system.stops.rebound, -travel)):
         assert turned(axle, -u)[1] - axle[1] == pytest.approx(rise, abs=1e-12)
 
 
 def test_without_stops_nothing_is_beyond_the_paper():
     system = with_road()
     assert system.linear
-    assert np.isinf([system.bump, system.rebound]).all()
+    assert np.isinf([system.stops.bump, system.stops.rebound]).all()
     assert road_torque(system, 0.3, -2.0) == pytest.approx(system.k_s[0] * 0.3 - system.c_s[0] * 2.0)
 
 
@@ -60,12 +60,16 @@ def test_rebound_is_damped_by_the_ratio():
 def test_a_stop_pushes_and_never_pulls():
     system = with_road(bump_travel=0.1, rebound_travel=0.08)
     deep = 0.01
-    assert stop_torque(system, system.bump - 1e-9, 5.0) == 0.0
-    assert stop_torque(system, system.bump + deep, 0.0) == pytest.approx(system.k_stop * deep)
-    assert stop_torque(system, system.bump + deep, 1.0) == pytest.approx(system.k_stop * deep + system.c_stop)
-    assert stop_torque(system, system.bump + deep, -100.0) == 0.0
-    assert stop_torque(system, system.rebound - deep, 0.0) == pytest.approx(-system.k_stop * deep)
-    assert stop_torque(system, system.rebound - deep, 100.0) == 0.0
+
+    def stop_torque(system: System, u: float, u_dot: float) -> float:
+        return added_torque(system.stops, 0.0, 0.0, 0.0, 0.0, u, u_dot)
+
+    assert stop_torque(system, system.stops.bump - 1e-9, 5.0) == 0.0
+    assert stop_torque(system, system.stops.bump + deep, 0.0) == pytest.approx(system.stops.k * deep)
+    assert stop_torque(system, system.stops.bump + deep, 1.0) == pytest.approx(system.stops.k * deep + system.stops.c)
+    assert stop_torque(system, system.stops.bump + deep, -100.0) == 0.0
+    assert stop_torque(system, system.stops.rebound - deep, 0.0) == pytest.approx(-system.stops.k * deep)
+    assert stop_torque(system, system.stops.rebound - deep, 100.0) == 0.0
 
 
 def test_energy_torque_and_stiffness_belong_together():
@@ -73,7 +77,7 @@ def test_energy_torque_and_stiffness_belong_together():
     rng, step = np.random.default_rng(0), 1e-6
     for _ in range(50):
         u = rng.uniform(-0.4, 0.4, len(system.k_s))
-        if np.abs(u - system.bump).min() < 2 * step or np.abs(u - system.rebound).min() < 2 * step:
+        if np.abs(u - system.stops.bump).min() < 2 * step or np.abs(u - system.stops.rebound).min() < 2 * step:
             continue
         here, ahead, behind = (elastic(system, u + side) for side in (0.0, step, -step))
         np.testing.assert_allclose((ahead.energy - behind.energy) / (2 * step), here.torque, rtol=1e-6, atol=1e-3)
@@ -107,9 +111,9 @@ def test_stops_keep_the_arms_of_a_fast_vehicle_from_turning_far():
 
     system = build_system(fast.replace(stops))
     free, held = reach({}), reach(stops)
-    assert free[0] < system.rebound - 0.2
-    assert held[0] > system.rebound - 0.08
-    assert held[1] < system.bump + 0.2 < free[1]
+    assert free[0] < system.stops.rebound - 0.2
+    assert held[0] > system.stops.rebound - 0.08
+    assert held[1] < system.stops.bump + 0.2 < free[1]
 
 
 def test_dampers_on_some_wheels_only():

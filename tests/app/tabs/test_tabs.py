@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from app.format.differences import figure_text
 from app.format.load_colours import RAMP, load_colours
 from app.format.markup import formula_html, words_html
 from app.panels.plot_page import marks_html, plot_page
 from app.plots.spectrum import Mark, named, spectrum_plot
 from app.tabs.about import LAWS, about_html
 from app.tabs.comfort import FIGURES, comfort_headline, comfort_page
-from app.tabs.comparison import figure_text
 from app.tabs.load_map import load_map, ticks
 from app.tabs.modes import mode_titles, modes_page
 from app.tabs.trust import balances, drift, errata_html, trust_html

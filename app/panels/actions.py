@@ -1,0 +1,145 @@
+"""Everything that panels and keys may ask for. The session carries it out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+from model.config.config import Config
+
+
+class Actions(Protocol):
+    """app.session.session.Session, or a stand-in. No method blocks: viser's event loop calls them."""
+
+    # Parameters and road
+
+    def change(self, key: str, value: Any) -> None:
+        """Give a parameter another value, as in a file."""
+
+    def load(self, preset: str) -> None:
+        """Take a preset, by its name."""
+
+    def reset(self) -> None:
+        """Go back to the preset without any change."""
+
+    def undo(self) -> None: ...
+
+    def redo(self) -> None: ...
+
+    def add_to_road(self, road_type: str) -> None:
+        """Add a part of this type to the road."""
+
+    def take_from_road(self) -> None:
+        """Take the last part of the road away."""
+
+    def upload_profile(self, name: str, content: bytes) -> None:
+        """Make the road of a CSV file."""
+
+    # Configurations
+
+    def upload_configuration(self, name: str, content: bytes) -> None:
+        """Take the configuration in a YAML file."""
+
+    def edit_yaml(self) -> None:
+        """Open the present configuration as text."""
+
+    def use_configuration(self, read: Callable[[], Config | None]) -> None:
+        """Take the configuration that `read` gives, if it gives one. It may take its time: it runs later."""
+
+    def save_preset(self, name: str) -> None:
+        """Make a preset of the configuration that is shown."""
+
+    # Runs and baseline
+
+    def pin(self) -> None:
+        """Make the run that is shown the baseline."""
+
+    def swap(self) -> None:
+        """Show the baseline, and make what is shown now the baseline."""
+
+    def clear_baseline(self) -> None:
+        """Compare with no run."""
+
+    def upload_run(self, name: str, content: bytes) -> None:
+        """Make the run in an NPZ file the baseline."""
+
+    def rename(self, name: str) -> None:
+        """Name the run that is shown, and keep it."""
+
+    def recall(self, number: int) -> None:
+        """Show a kept run."""
+
+    def compare(self, number: int) -> None:
+        """Make a kept run the baseline."""
+
+    def delete(self, number: int) -> None:
+        """Keep a run no more."""
+
+    # Playback and drive
+
+    def toggle(self) -> None:
+        """Play, or pause."""
+
+    def step(self, steps: int) -> None:
+        """Go some steps on, or back when negative, and pause."""
+
+    def scrub(self, time: float) -> None:
+        """Go to a time, s, and pause."""
+
+    def set_speed(self, speed: float) -> None:
+        """Play or drive at so many times real time."""
+
+    def set_driving(self, on: bool) -> None:
+        """Drive on and on with the present parameters, or show their run."""
+
+    def toggle_driving(self) -> None: ...
+
+    def restart_drive(self) -> None:
+        """Drive from rest."""
+
+    # Looks
+
+    def set_view(self, view: str) -> None:
+        """Look at the vehicle from another standpoint (app/view3d/camera.py)."""
+
+    def set_switch(self, switch: str, on: bool | float) -> None:
+        """Turn something of the 3-D view on or off, or set its size."""
+
+    def toggle_switch(self, switch: str) -> None: ...
+
+    def pick_wheel(self, wheel: int | None) -> None:
+        """Show a wheel's card; None, or the wheel that is picked already: no card."""
+
+    def set_dark(self, dark: bool) -> None:
+        """Choose the look of the page."""
+
+    # Spectrum
+
+    def redraw_spectrum(self) -> None:
+        """Show the spectrum that the tab's boxes say."""
+
+    def show_mode(self) -> None:
+        """Show the mode that the tab's box says instead of the run."""
+
+    # Downloads
+
+    def export(self, what: str) -> None:
+        """Make a file and let the browser download it; what: a key of app.session.transfers.Transfers."""
+
+    def cancel_export(self) -> None: ...
+
+    # What the page itself tells
+
+    def set_in_view(self, in_view: bool) -> None:
+        """A page in the background stands still."""
+
+    def set_in_front(self, tabs: frozenset[str]) -> None:
+        """Only the tabs that are seen keep up with a drag."""
+
+    def prefer_dark(self, dark: bool) -> None:
+        """The browser is set to this look."""
+
+    # Errors
+
+    def fail(self, error: Exception) -> None:
+        """Log an error and tell the user."""
