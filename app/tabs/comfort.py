@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import html
 from collections.abc import Callable
 from typing import NamedTuple
 
-from app.format.differences import figure_text
+from app.format.differences import NONE, figure_text
 from app.format.markup import page, words_html
 from app.tabs.comparison import cells
-from model.analysis.comfort import POWER_LIMIT, Comfort, ride_comfort
-from model.analysis.ride import Row
-from model.analysis.signals import CENTRE_OF_MASS, seat
+from model.analysis.comfort import MOST_CREST, POWER_LIMIT, Comfort, ride_comfort
+from model.analysis.figures import DOSE, POWER, SHOCK, TRANSIENT, WEIGHTED, Row, percent
+from model.analysis.ride import figure_warnings
+from model.analysis.signals import CENTRE_OF_MASS, same_window, seat, window
 from model.simulation.trajectory import Trajectory
 
 LEAST = 1e-3  # of all figures: a smaller one of the baseline is as good as nothing
@@ -27,25 +29,34 @@ class Figure(NamedTuple):
 
 
 FIGURES = (
-    Figure("Up and down", "m/s²", "rms weighted by W_k of ISO 2631-1: 5 to 8 Hz count most", lambda of: of.vertical),
-    Figure("Fore and aft", "m/s²", "rms weighted by W_d: 0.5 to 2 Hz count most", lambda of: of.fore_aft),
-    Figure("Both", "m/s²", "root of the sum of their squares: what the words are about", lambda of: of.total),
+    Figure(
+        "Up and down", WEIGHTED.unit, "rms weighted by W_k of ISO 2631-1: 5 to 8 Hz count most", lambda of: of.vertical
+    ),
+    Figure("Fore and aft", WEIGHTED.unit, "rms weighted by W_d: 0.5 to 2 Hz count most", lambda of: of.fore_aft),
+    Figure("Both", WEIGHTED.unit, "root of the sum of their squares: what the words are about", lambda of: of.total),
     Figure(
         "Crest factor",
         "",
-        "peak of up and down / its rms: over 9, the rms tells too little",
+        f"peak of up and down / its rms: over {MOST_CREST:g}, the rms tells too little; use MTVV or VDV",
         lambda of: of.crest_factor,
     ),
-    Figure("VDV", "m/s¹·⁷⁵", "dose of up and down: it tells jolts, and grows with time", lambda of: of.dose, True),
-    Figure("MTVV", "m/s²", "rms of the worst second of up and down", lambda of: of.transient),
+    Figure("VDV", DOSE.unit, "dose of up and down: it tells jolts, and grows with time", lambda of: of.dose, True),
+    Figure("MTVV", TRANSIENT.unit, "rms of the worst second of up and down", lambda of: of.transient),
+    Figure(
+        "Shock",
+        SHOCK.unit,
+        "largest of up and down, not weighted, behind a low-pass of 30 Hz; 2.5 g is held to be the limit",
+        lambda of: of.shock,
+    ),
     Figure(
         "Absorbed power",
-        "W",
+        POWER.unit,
         f"by a sitting person (Pradko and Lee); {POWER_LIMIT:g} W is held to be the most that crews bear for long",
         lambda of: of.absorbed_power,
     ),
 )
-PLACES = (("Driver's seat", seat), ("Centre of mass", lambda config: CENTRE_OF_MASS))
+SEAT = "Driver's seat"
+PLACES = ((SEAT, seat), ("Centre of mass", lambda config: CENTRE_OF_MASS))
 
 
 def comfort_headline(run: Trajectory) -> str:
@@ -53,40 +64,50 @@ def comfort_headline(run: Trajectory) -> str:
     if not len(run.t):
         return ""
     felt = ride_comfort(run, seat(run.config))
+    if felt is None:
+        rate = f"{run.config.simulation.output_rate:g}"
+        return f'<div class="trackride-comfort">Driver\'s seat: {NONE} (too few samples: {rate} a second)</div>'
     sign = "bad" if felt.absorbed_power > POWER_LIMIT else ""
+    alarms = ["run too short"] if felt.window.shortfall else []
+    if felt.crest_factor is not None and felt.crest_factor > MOST_CREST:
+        alarms.append(f"crest factor {figure_text(felt.crest_factor)}")
+    said = "".join(f' · <span class="bad">{alarm}</span>' for alarm in alarms)
     return (
         f'<div class="trackride-comfort">Driver\'s seat: <b>{felt.reaction}</b>, {figure_text(felt.total)} m/s² '
-        f'weighted · <span class="{sign}">{figure_text(felt.absorbed_power)} W</span> absorbed</div>'
+        f'weighted · <span class="{sign}">{figure_text(felt.absorbed_power)} W</span> absorbed{said}</div>'
     )
 
 
 def comfort_page(run: Trajectory, baseline: Trajectory | None = None) -> str:
-    """HTML: all figures at both places, now and of the baseline, and what they mean."""
+    """HTML: all figures at both places, now and of the baseline, what they are taken from and what they mean."""
     if not len(run.t):
         return ""
     other = baseline if baseline is not None and len(baseline.t) else None
-    tables = []
+    taken = window(run)
+    tables, felt_by_driver = [], None
     for place, point in PLACES:
-        felt = ride_comfort(run, point(run.config))
-        before = None if other is None else ride_comfort(other, point(other.config))
-        same_length = before is not None and other is not None and run.t[-1] - felt.since == other.t[-1] - before.since
-        tables.append(_table(place, felt, before, same_length))
-    stretch = (
-        f"From {felt.since:.1f} s on, when the start has died away" if felt.since > run.t[0] else "Of all there is"
+        felt = ride_comfort(run, point(run.config), taken)
+        if place == SEAT:
+            felt_by_driver = felt
+        if felt is not None:
+            tables.append(_table(place, felt, None if other is None else ride_comfort(other, point(other.config))))
+    cautions = "".join(
+        f'<p class="bad">{html.escape(str(warning))}</p>'
+        for warning in figure_warnings(run.config, taken, felt_by_driver)
     )
     meanings = "".join(f"<li><b>{figure.name}</b>: {words_html(figure.meaning)}.</li>" for figure in FIGURES)
     return page(
-        f"<h4>Ride comfort</h4>{''.join(tables)}<p>{stretch}; up and along the level, not the hull's floor. The words "
-        f"are ISO 2631-1's; where they overlap, the harsher one.</p><ul>{meanings}</ul>"
+        f"<h4>Ride comfort</h4>{cautions}{''.join(tables)}<p>Taken {taken.why}; up and along the level, not the hull's "
+        f"floor. The words are ISO 2631-1's; where they overlap, the harsher one.</p><ul>{meanings}</ul>"
     )
 
 
-def _table(place: str, now: Comfort, baseline: Comfort | None, same_length: bool) -> str:
+def _table(place: str, now: Comfort, baseline: Comfort | None) -> str:
     compared = baseline is not None
     heads = "".join(f"<th>{text}</th>" for text in (place, "now", *(("baseline", "change") if compared else ())))
     lines = [f"<tr>{heads}</tr>"]
     for figure in FIGURES:
-        row = _row(figure, now, baseline, same_length)
+        row = _row(figure, now, baseline)
         label = f"{row.figure}, {row.unit}" if row.unit else row.figure
         lines.append(f"<tr><td>{label}</td>{''.join(cells(row, compared))}</tr>")
     words = [now.reaction] if baseline is None else [now.reaction, baseline.reaction, ""]
@@ -95,15 +116,10 @@ def _table(place: str, now: Comfort, baseline: Comfort | None, same_length: bool
     return f'<table class="trackride-figures felt">{"".join(lines)}</table>'
 
 
-def _row(figure: Figure, now: Comfort, baseline: Comfort | None, same_length: bool) -> Row:
-    value = figure.value(now)
-    reference = None if baseline is None else figure.value(baseline)
-    means = value is not None and reference is not None and reference >= LEAST and (same_length or not figure.grows)
-    return Row(
-        figure.name,
-        "",
-        figure.unit,
-        value,
-        reference,
-        100 * (value / reference - 1) if means and value is not None and reference is not None else None,
-    )
+def _row(figure: Figure, now: Comfort, baseline: Comfort | None) -> Row:
+    value, reference, change = figure.value(now), None, None
+    if baseline is not None:
+        reference = figure.value(baseline)
+        if not figure.grows or same_window(now.window, baseline.window):
+            change = percent(value, reference, LEAST)
+    return Row(figure.name, "", figure.unit, value, reference, change)
