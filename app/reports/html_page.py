@@ -34,7 +34,7 @@ def joined(parts: Iterable[str]) -> Html:
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[str]], kind: str = "") -> Html:
-    """A table; the first cell of a row is its heading. kind: a class of assets/page.css. No heads: no head row."""
+    """A table; the first cell of a row is its heading. kind: a class of assets/report.css. No heads: no head row."""
     head = element("thead", element("tr", *(element("th", text) for text in heads))) if heads else Html()
     body = [element("tr", element("th", first), *(element("td", cell) for cell in cells)) for first, *cells in rows]
     return element("div", element("table", head, element("tbody", *body), class_=kind), class_="scroll")
@@ -51,7 +51,7 @@ def picture(drawing: Drawing, caption: str = "", suffix: str = ".svg") -> Html:
 
 def document(title: str, subtitle: str, body: Iterable[str]) -> str:
     """The whole file. It is stamped with version and date."""
-    style = (resources.files("assets") / "page.css").read_text(encoding="utf-8")
+    style = (resources.files("assets") / "report.css").read_text(encoding="utf-8")
     stamp = f"Trackride {version('trackride')}, {datetime.now():%Y-%m-%d %H:%M}"
     header = element("header", element("p", stamp, class_="stamp"), element("h1", title), element("p", subtitle))
     head = (

@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple, Protocol
 import numpy as np
 import viser
 
-from app.view3d.meshes.layout import Layout
+from app.view3d.meshes.measures import Layout
 
 View = Literal["side", "three-quarter", "front", "wheel"]
 FIELD_OF_VIEW = 0.36  # rad, vertical: a long lens, so that wheels stay round and heights comparable

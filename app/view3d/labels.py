@@ -6,7 +6,7 @@ import numpy as np
 import viser
 
 from app.format.load_unit import LoadUnit
-from app.view3d.meshes.layout import Layout
+from app.view3d.meshes.measures import Layout
 from app.view3d.nodes import VEHICLE, Frame, update
 
 BELOW = 0.12  # m from the lowest point of the road down to the names of the road wheels of the paper's vehicle

@@ -12,7 +12,7 @@ from viser import _messages as messages
 from app.format.colours import Colour, Palette, Theme, rgb
 from app.view3d.meshes import running_gear
 from app.view3d.meshes.hull import hull
-from app.view3d.meshes.layout import Layout
+from app.view3d.meshes.measures import Layout
 from app.view3d.meshes.solids import Part, glb, joined, light
 from app.view3d.meshes.surroundings import RoadStrip, ground, shadow_faces, sky
 from app.view3d.snapshot import SIDES, Poses, Scene, Snapshot

@@ -8,7 +8,7 @@ import viser
 from app.format.colours import Palette, Theme, rgb
 from app.format.load_colours import load_colours
 from app.view3d.labels import BELOW
-from app.view3d.meshes.layout import Layout
+from app.view3d.meshes.measures import Layout
 from app.view3d.meshes.solids import lathe, light
 from app.view3d.nodes import Frame, paint, update
 from app.view3d.snapshot import SIDES, Poses, Scene, Snapshot

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.view3d.meshes.layout import Layout, layout_of
+from app.view3d.meshes.measures import Layout, layout_of
 from app.view3d.meshes.surroundings import AHEAD, BEHIND, TILES, shadow
 from app.view3d.track_belt import ARC, points_along, track_path
 from model.dynamics.vehicle import System

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.view3d.meshes.layout import Layout
+from app.view3d.meshes.measures import Layout
 from app.view3d.meshes.running_gear import DARK_STEEL, RUBBER, STEEL
 from app.view3d.meshes.solids import Part, Rgba, both_sides, box, convex, lathe, lengthwise, upright
 

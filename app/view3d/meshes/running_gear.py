@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.view3d.meshes.layout import Layout
+from app.view3d.meshes.measures import Layout
 from app.view3d.meshes.solids import Part, Rgba, box, convex, lathe, lengthwise
 
 RUBBER: Rgba = (44, 46, 48, 255)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from app.view3d.meshes.layout import Layout
+from app.view3d.meshes.measures import Layout
 from app.view3d.meshes.solids import Part, Rgb, lathe, upright
 
 FAR = 400.0  # radius of sky and ground

@@ -24,7 +24,7 @@ from app.panels.page_layout import (
 )
 from app.view3d.camera import Standpoint, View, standpoint
 from app.view3d.meshes.hull import hull_edges
-from app.view3d.meshes.layout import layout_of
+from app.view3d.meshes.measures import layout_of
 from model import load_config
 from model.dynamics.vehicle import build_system
 

@@ -12,7 +12,7 @@ import trimesh
 
 from app.view3d.meshes import running_gear
 from app.view3d.meshes.hull import hull, hull_edges
-from app.view3d.meshes.layout import Layout, layout_of
+from app.view3d.meshes.measures import Layout, layout_of
 from app.view3d.meshes.solids import box, convex, glb, joined, lathe, lengthwise, light, upright
 from app.view3d.meshes.surroundings import TILES, RoadStrip, ground, shadow, shadow_faces, sky
 from app.view3d.snapshot import build_scene

@@ -12,7 +12,7 @@ import pytest
 import viser
 
 from app.view3d.camera import VIEWS, standpoint
-from app.view3d.meshes.layout import Layout, layout_of
+from app.view3d.meshes.measures import Layout, layout_of
 from app.view3d.nodes import ROUNDING
 from app.view3d.view import Stage
 from model import Trajectory, load_config, simulate
