@@ -11,8 +11,8 @@ from typing import Any
 import rich
 import viser
 
-from app.view3d.camera import View
-from app.view3d.view import Stage
+from app.view3d.camera import Standpoint
+from app.view3d.view import View3D
 from model.road.road import Road
 from model.simulation.trajectory import Trajectory
 
@@ -40,8 +40,8 @@ AT_ONCE = """<script>
 
 
 @dataclass
-class _Lens:
-    """A camera that takes note of where it is put."""
+class _FixedCamera:
+    """A camera that remembers where it is put."""
 
     image_width, image_height = WINDOW
     fov: float = 0.0
@@ -51,14 +51,14 @@ class _Lens:
     max_orbit_distance: Any = None
 
     def on_update(self, callback: Any) -> None:
-        """Nobody moves it."""
+        """Nobody moves it, so there is nothing to call."""
 
 
-class _Page:
+class _SharedTab:
     """A tab without a browser: the scene that all visitors of the throwaway server would share."""
 
     def __init__(self, server: viser.ViserServer) -> None:
-        self.scene, self.atomic, self.camera = server.scene, server.atomic, _Lens()
+        self.scene, self.atomic, self.camera = server.scene, server.atomic, _FixedCamera()
 
 
 def replay_html(
@@ -66,7 +66,7 @@ def replay_html(
     baseline: Trajectory | None,
     title: str,
     dark: bool = False,
-    view: View = "three-quarter",
+    standpoint: Standpoint = "three-quarter",
     should_stop: Callable[[], bool] = lambda: False,
     road: Road | None = None,
 ) -> str | None:
@@ -80,7 +80,7 @@ def replay_html(
     duration = float(trajectory.t[-1] - trajectory.t[0])
     if duration > LONGEST:
         title += f" (the first {LONGEST:g} s of {duration:g} s)"
-    page = _record(trajectory, baseline, min(duration, LONGEST), dark, view, should_stop, road)
+    page = _record(trajectory, baseline, min(duration, LONGEST), dark, standpoint, should_stop, road)
     return page and _titled(page, title, dark)
 
 
@@ -89,26 +89,26 @@ def _record(
     baseline: Trajectory | None,
     duration: float,
     dark: bool,
-    view: View,
+    standpoint: Standpoint,
     should_stop: Callable[[], bool],
     road: Road | None,
 ) -> str | None:
     with _silence():
         server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
     try:
-        page = _Page(server)
-        stage = Stage(page, dark)
-        stage.show(trajectory) if road is None else stage.show_live(trajectory, road)
-        stage.show_ghost(baseline)
-        stage.set_view(view)
-        start, camera = server.initial_camera, page.camera
+        tab = _SharedTab(server)
+        view = View3D(tab, dark)
+        view.show(trajectory) if road is None else view.show_live(trajectory, road)
+        view.show_ghost(baseline)
+        view.set_view(standpoint)
+        start, camera = server.initial_camera, tab.camera
         start.fov, start.up = camera.fov, camera.up_direction
         start.position, start.look_at = camera.position, camera.look_at
         recording = server.get_scene_serializer()
         for frame in range(int(duration * RATE) + 1):
             if should_stop():
                 return None
-            stage.draw(float(trajectory.t[0]) + frame / RATE)
+            view.draw(float(trajectory.t[0]) + frame / RATE)
             recording.insert_sleep(1 / RATE)
         return recording.as_html(dark_mode=dark)
     finally:

@@ -26,9 +26,9 @@ def draw_side_view(axes: Axes, trajectory: Trajectory, palette: Palette, time: f
     """Fill axes, whose shape is kept, with the vehicle on its road at a time, s; arrows are the normal loads."""
     scene = build_scene(trajectory)
     now = scene.at(time)
-    system, layout = scene.system, scene.layout
-    s = layout.scale
-    left, right = layout.idler.x - ROOM * s, layout.sprocket.x + (ROOM + 0.5) * s
+    system, measures = scene.system, scene.measures
+    s = measures.scale
+    left, right = measures.idler.x - ROOM * s, measures.sprocket.x + (ROOM + 0.5) * s
     box = axes.get_window_extent()
     height = (right - left) * box.height / box.width
     bottom = float(now.hull.positions[0, 2]) - 0.3 * (height - 2.1 * s) - 0.25 * s
@@ -49,15 +49,15 @@ def draw_side_view(axes: Axes, trajectory: Trajectory, palette: Palette, time: f
         belt[:, 0],
         belt[:, 2],
         color=_shade(running_gear.SHOE[:3], 0.8),
-        lw=layout.shoe_thickness / points,
+        lw=measures.shoe_thickness / points,
         dashes=(2.2, 0.25),
     )
     for poses, radius in (
-        (_right(now.sprockets), layout.sprocket.radius),
-        (_right(now.road_wheels), layout.tyre_radius),
+        (_right(now.sprockets), measures.sprocket.radius),
+        (_right(now.road_wheels), measures.tyre_radius),
     ):
         for pose in zip(poses.positions, poses.wxyzs, strict=True):
-            _draw_wheel(axes, *pose, radius - layout.shoe_thickness * (radius != layout.tyre_radius))
+            _draw_wheel(axes, *pose, radius - measures.shoe_thickness * (radius != measures.tyre_radius))
     for position in _right(now.imaginary_wheels).positions:
         blue = _shade(running_gear.IMAGINARY)
         axes.add_patch(
@@ -97,7 +97,7 @@ def _angle(wxyz: np.ndarray) -> float:
 def _draw_hull(axes: Axes, scene: Scene, now: Snapshot) -> None:
     """Its faces that are seen from the right, the farthest first."""
     faces, shades = [], []
-    for part in hull(scene.layout):
+    for part in hull(scene.measures):
         corners = part.vertices[part.faces]
         normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-12)[:, None]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from viser import _messages as messages
 from app.format.colours import Colour, Palette, Theme, rgb
 from app.view3d.meshes import running_gear
 from app.view3d.meshes.hull import hull
-from app.view3d.meshes.measures import Layout
+from app.view3d.meshes.measures import Measures
 from app.view3d.meshes.solids import Part, glb, joined, light
 from app.view3d.meshes.surroundings import RoadStrip, ground, shadow_faces, sky
 from app.view3d.snapshot import SIDES, Poses, Scene, Snapshot
@@ -52,32 +52,32 @@ class VehicleNodes:
     """A vehicle with its load arrows."""
 
     def __init__(self, api: viser.SceneApi, scene: Scene, now: Snapshot) -> None:
-        layout, system = scene.layout, scene.system
+        measures, system = scene.measures, scene.system
         self._api = api
         self._wheels = system.n, system.m
         self._node = api.add_frame(VEHICLE, show_axes=False)
         self._shadow = api.add_mesh_simple(
             f"{VEHICLE}/shadow", now.shadow, shadow_faces(), color=(0, 0, 0), opacity=0.09
         )
-        idler = (layout.idler.radius - layout.shoe_thickness) / layout.tyre_radius
+        idler = (measures.idler.radius - measures.shoe_thickness) / measures.tyre_radius
         sizes = np.tile([1.0] * system.n + [idler], len(SIDES))
         self._batches: dict[str, viser.BatchedGlbHandle | viser.BatchedMeshHandle] = {
-            "hull": self._painted("hull", hull(layout), now.hull),
-            "road_wheels": self._painted("road_wheels", running_gear.road_wheel(layout), now.road_wheels, sizes),
-            "sprockets": self._painted("sprockets", running_gear.sprocket(layout), now.sprockets),
-            "shoes": self._painted("shoes", running_gear.track_shoe(layout), now.shoes),
+            "hull": self._painted("hull", hull(measures), now.hull),
+            "road_wheels": self._painted("road_wheels", running_gear.road_wheel(measures), now.road_wheels, sizes),
+            "sprockets": self._painted("sprockets", running_gear.sprocket(measures), now.sprockets),
+            "shoes": self._painted("shoes", running_gear.track_shoe(measures), now.shoes),
         }
-        self._road_arms = self._plain("road_arms", running_gear.road_arm(layout), now.road_arms)
+        self._road_arms = self._plain("road_arms", running_gear.road_arm(measures), now.road_arms)
         self._batches["road_arms"] = self._road_arms
         self._imaginary_arms: viser.BatchedMeshHandle | None = None
         if system.m:
-            disc, rod = running_gear.imaginary_wheel(layout), running_gear.imaginary_arm(layout)
+            disc, rod = running_gear.imaginary_wheel(measures), running_gear.imaginary_arm(measures)
             stretch = np.ones((len(SIDES) * system.m, 3))
-            stretch[:, 0] = np.tile(layout.links, len(SIDES))
+            stretch[:, 0] = np.tile(measures.links, len(SIDES))
             self._batches["imaginary_wheels"] = self._painted("imaginary_wheels", disc, now.imaginary_wheels)
             self._imaginary_arms = self._plain("imaginary_arms", rod, now.imaginary_arms, stretch)
             self._batches["imaginary_arms"] = self._imaginary_arms
-        s = layout.scale
+        s = measures.scale
         self._arrows = api.add_arrows(
             f"{VEHICLE}/arrows",
             now.arrows,
@@ -97,16 +97,15 @@ class VehicleNodes:
     def draw(self, scene: Scene, now: Snapshot) -> None:
         """Bring everything that is visible to where it is now."""
         for name, node in self._batches.items():
-            if node.visible:
-                poses: Poses = getattr(now, name)
-                update(node, batched_positions=poses.positions, batched_wxyzs=poses.wxyzs)
+            poses: Poses = getattr(now, name)
+            update(node, batched_positions=poses.positions, batched_wxyzs=poses.wxyzs)
         update(self._shadow, vertices=now.shadow)
         if self._arrows.visible:
             update(self._arrows, points=now.arrows)
 
-    def show(self, *, hull: bool, arrows: bool) -> None:
-        self._batches["hull"].visible = hull
-        self._arrows.visible = arrows
+    def show(self, on: Mapping[str, bool]) -> None:
+        """Take over which switches are on."""
+        self._arrows.visible = on["arrows"]
 
     def on_click(self, act: Callable[[int], None]) -> None:
         """Call act(wheel), which must not block, when the user clicks a wheel; counted as in a run's arrays."""
@@ -151,9 +150,9 @@ class RoadNodes:
     the vehicle's poses, and wheels would not stand on the road.
     """
 
-    def __init__(self, api: viser.SceneApi, layout: Layout) -> None:
-        reach = (layout.front - layout.rear) / 2 + 1.8 * layout.scale
-        self._strip = RoadStrip(reach, layout.road_half_width)
+    def __init__(self, api: viser.SceneApi, measures: Measures) -> None:
+        reach = (measures.front - measures.rear) / 2 + 1.8 * measures.scale
+        self._strip = RoadStrip(reach, measures.road_half_width)
         self._shown: tuple[Profile, float, float] | None = None  # of the road; where the strip stands, its foot
         self._meshes: list[np.ndarray] = []  # of the tiles from there on, rounded
         self._shift = 0.0

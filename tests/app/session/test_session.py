@@ -299,7 +299,7 @@ def test_view_switches_reach_the_scene_on_the_view_thread(explore: Any, open_tab
     tab.use("Load arrows", False)
     tab.use("Look from", "Front")
     tab.press("Follow the vehicle, or not")
-    wait_for(lambda: not view.show_arrows and not view.follow and view.views == ["front"])
+    wait_for(lambda: view.switches == {"arrows": False, "follow": False} and view.views == ["front"])
     wait_for(lambda: tab.widget("Follow vehicle")["value"] is False)
     light = tab.charts()[0]["series"][1]["stroke"]
     tab.use("Dark", True)
