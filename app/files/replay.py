@@ -11,6 +11,7 @@ from typing import Any
 import rich
 import viser
 
+from app.format.assets import asset
 from app.view3d.camera import Standpoint
 from app.view3d.view import View3D
 from model.road.road import Road
@@ -19,24 +20,6 @@ from model.simulation.trajectory import Trajectory
 RATE = 25.0  # frames a second
 LONGEST = 30.0  # s of a run that are recorded: for each about 0.3 megabytes, with a ghost 0.4
 WINDOW = (1600, 900)  # pixels, whose shape the view is fitted to
-
-# Let messages take effect at once, and not with the next frame: whenever it starts anew or is scrubbed back, the page
-# first turns on viser's own lights, and would show them until then. Where a page has no such insides, nothing changes.
-AT_ONCE = """<script>
-  const waiting = setInterval(() => {
-    const viewer = window.__viserMutable;
-    if (!viewer?.drainMessageQueue) return;
-    clearInterval(waiting);
-    const request = viewer.requestRender;
-    let busy = false;
-    viewer.requestRender = () => {
-      request();
-      if (busy) return;
-      busy = true;
-      try { viewer.drainMessageQueue?.(); } finally { busy = false; }
-    };
-  }, 50);
-</script>"""
 
 
 @dataclass
@@ -137,4 +120,4 @@ def _titled(page: str, title: str, dark: bool) -> str:
     )
     head, body = page.split("<title>Viser</title>", 1)
     body, end = body.rsplit("</body>", 1)
-    return f"{head}<title>{text}</title>{body}{caption}{AT_ONCE}</body>{end}"
+    return f"{head}<title>{text}</title>{body}{caption}<script>{asset('replay.js')}</script></body>{end}"

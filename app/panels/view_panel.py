@@ -9,9 +9,10 @@ import viser
 
 from app.format.load_colours import RAMP
 from app.format.load_unit import LoadUnit
+from app.format.markup import element
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
-from app.tabs.load_map import ticks
+from app.plots.ticks import ticks
 from app.view3d.camera import Standpoint
 from app.view3d.overlays import SWITCHES
 
@@ -73,15 +74,13 @@ class ViewPanel:
 def load_scale(top: float, unit: LoadUnit) -> str:
     """HTML of the ramp of load colours up to `top`, N, with its ticks in that unit."""
     highest = top / unit.newtons
-    marks = "".join(
-        f'<span style="position: absolute; left: {100 * tick / highest:.2f}%; translate: -50%">{tick:g}</span>'
+    ramp = f"height: 0.8em; background: linear-gradient(to right, {', '.join(RAMP)})"
+    numbers = (
+        element("span", f"{tick:g}", style=f"position: absolute; left: {100 * tick / highest:.2f}%; translate: -50%")
         for tick in ticks(0.0, highest, 4)
     )
-    return (
-        f'<div style="padding: 0 0.8em 0.5em; font-size: 0.8em">Normal load, {unit.name}'
-        f'<div style="height: 0.8em; background: linear-gradient(to right, {", ".join(RAMP)})"></div>'
-        f'<div style="position: relative; height: 1.6em">{marks}</div></div>'
-    )
+    parts = element("div", style=ramp), element("div", *numbers, style="position: relative; height: 1.6em")
+    return str(element("div", f"Normal load, {unit.name}", *parts, style="padding: 0 0.8em 0.5em; font-size: 0.8em"))
 
 
 def _switching(actions: Actions, switch: str) -> Callable[[Any], None]:

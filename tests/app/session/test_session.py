@@ -288,7 +288,7 @@ def test_playback_moves_on_and_obeys(explore: Any, open_tab: Any) -> None:
     wait_for(lambda: view.times[-1] == pytest.approx(1.35))
     tab.press("Play or pause")
     wait_for(lambda: len(set(view.times[-3:])) == 3)
-    wait_for(lambda: float(re.search(r"trackride-time' at='\[\[([\d.]+)", tab.html("trackride-time"))[1]) > 1.35)
+    wait_for(lambda: float(re.search(r'trackride-time" at="\[\[([\d.]+)', tab.html("trackride-time"))[1]) > 1.35)
 
 
 def test_view_switches_reach_the_scene_on_the_view_thread(explore: Any, open_tab: Any) -> None:
