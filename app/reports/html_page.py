@@ -5,11 +5,10 @@ from __future__ import annotations
 from base64 import b64encode
 from collections.abc import Iterable, Sequence
 from datetime import datetime
-from importlib.metadata import version
 
 from app.format.assets import asset
 from app.format.markup import Content, Html, element, style, table
-from app.reports.drawings import LOOKS, Drawing
+from app.reports.drawings import LOOKS, Drawing, stamp
 
 _KIND = {".svg": "image/svg+xml", ".png": "image/png"}
 
@@ -29,8 +28,8 @@ def picture(drawing: Drawing, caption: str = "", suffix: str = ".svg") -> Html:
 
 def document(title: str, subtitle: str, body: Iterable[Content]) -> str:
     """The whole file. It is stamped with version and date."""
-    stamp = f"Trackride {version('trackride')}, {datetime.now():%Y-%m-%d %H:%M}"
-    header = element("header", element("p", stamp, class_="stamp"), element("h1", title), element("p", subtitle))
+    made = element("p", f"{stamp()}, {datetime.now():%Y-%m-%d %H:%M}", class_="stamp")
+    header = element("header", made, element("h1", title), element("p", subtitle))
     head = (
         '<meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">'
         f'<meta name="color-scheme" content="light dark">{element("title", title)}{style(asset("report.css"))}'

@@ -16,9 +16,9 @@ from app.format.parameters import value_text
 from app.plots.curves import Plot, load_plots
 from app.plots.ride import ride_plots
 from app.plots.spectrum import LEAST_SAMPLES, Mark, named, spectrum_plot
-from app.reports.drawings import LIGHT, WIDTH, Drawing, Look, plots_drawing
+from app.reports.drawings import LIGHT_LOOK, WIDTH, Drawing, Look, plots_drawing
 from app.reports.html_page import document, picture, wide_table
-from app.reports.side_view import draw_side_view
+from app.reports.side_view import draw_side_view, highest_load
 from app.tabs.comfort import COMFORT_FIGURES, PLACES
 from app.tabs.modes import NOTE, moving
 from app.tabs.trust import balances, drift, work
@@ -87,11 +87,6 @@ def vehicle_drawing(run: Trajectory) -> Drawing:
     return Drawing("The vehicle on its road", WIDTH, 3.9, draw)
 
 
-def highest_load(run: Trajectory) -> float:
-    """When a wheel carries most, s."""
-    return float(run.t[run.normal_load.max(axis=1).argmax()])
-
-
 def run_drawings(run: Trajectory, modes: Modes) -> list[Drawing]:
     """All plots of a run: ride, loads, spectrum."""
     found = named(excitation(run.config), modes)
@@ -103,7 +98,7 @@ def run_drawings(run: Trajectory, modes: Modes) -> list[Drawing]:
     def drawing(number: int, title: str) -> Drawing:
         return plots_drawing(title, lambda look: [plots(look)[number]])
 
-    drawings = [drawing(number, plot.title) for number, plot in enumerate(plots(LIGHT))]
+    drawings = [drawing(number, plot.title) for number, plot in enumerate(plots(LIGHT_LOOK))]
     return [*drawings, spectrum_drawing(run, found)] if len(run.t) >= LEAST_SAMPLES else drawings
 
 

@@ -14,7 +14,7 @@ from app.view3d.meshes import running_gear
 from app.view3d.meshes.hull import hull
 from app.view3d.meshes.solids import Part
 from app.view3d.snapshot import Poses, Scene, Snapshot, build_scene
-from model.simulation.trajectory import Trajectory
+from model.simulation.trajectory import Trajectory, wheel_names
 
 LAMP = np.array([0.25, -0.55, 0.8])  # towards the light: x forward, y to the left, z up
 DIM = 0.55  # brightness of faces turned away from the light
@@ -75,7 +75,12 @@ def draw_side_view(axes: Axes, trajectory: Trajectory, palette: Palette, time: f
             "shrinkB": 0,
         }
         axes.annotate("", arrow[1, ::2], arrow[0, ::2], arrowprops=style, zorder=7)
-    _label(axes, now, palette, system.n, points)
+    _label(axes, scene, now, palette, points)
+
+
+def highest_load(run: Trajectory) -> float:
+    """When a wheel carries most, s: the moment to draw where nobody has chosen one."""
+    return float(run.t[run.normal_load.max(axis=1).argmax()])
 
 
 def _right(poses: Poses) -> Poses:
@@ -145,11 +150,10 @@ def _draw_arms(axes: Axes, scene: Scene, now: Snapshot, palette: Palette) -> Non
         )
 
 
-def _label(axes: Axes, now: Snapshot, palette: Palette, n: int, points: float) -> None:
+def _label(axes: Axes, scene: Scene, now: Snapshot, palette: Palette, points: float) -> None:
     """R1… and below them I1…, under the ground where the wheels touch; points: m of the view for each."""
     feet = now.arrows[: len(palette.wheels), 0]
-    names = [f"R{k + 1}" for k in range(n)] + [f"I{k + 1}" for k in range(len(feet) - n)]
-    for name, foot, colour in zip(names, feet, palette.wheels, strict=True):
+    for name, foot, colour in zip(wheel_names(scene.system), feet, palette.wheels, strict=True):
         y = feet[:, 2].min() - (9 if name[0] == "R" else 17) * points
         axes.text(foot[0], y, name, color=colour, fontsize=5.5, ha="center", va="center", zorder=8)
 

@@ -89,10 +89,10 @@ class VehicleNodes:
 
     def colour(self, palette: Palette) -> None:
         """Give arms and arrows their wheels' colours."""
-        self._road_arms.batched_colors = _on_both_sides(palette.road)
+        self._road_arms.batched_colors = on_both_sides(palette.road)
         if self._imaginary_arms is not None:
-            self._imaginary_arms.batched_colors = _on_both_sides(palette.imaginary)
-        self._arrows.colors = _on_both_sides(palette.wheels)
+            self._imaginary_arms.batched_colors = on_both_sides(palette.imaginary)
+        self._arrows.colors = on_both_sides(palette.wheels)
 
     def draw(self, scene: Scene, now: Snapshot) -> None:
         """Bring everything that is visible to where it is now."""
@@ -220,6 +220,6 @@ class Surroundings:
         self._api.add_glb(name, glb([mesh], glow=GLOW), cast_shadow=False, receive_shadow=False)
 
 
-def _on_both_sides(colours: tuple[str, ...]) -> np.ndarray:
-    """CSS colours of W wheels as amounts of light (2 W, 3)."""
+def on_both_sides(colours: tuple[str, ...]) -> np.ndarray:
+    """CSS colours of W wheels as amounts of light (2 W, 3), for both sides of the vehicle."""
     return np.tile(light(np.array([rgb(colour) for colour in colours])), (len(SIDES), 1))

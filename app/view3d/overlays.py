@@ -13,12 +13,12 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import viser
 
-from app.format.colours import Palette, Theme, rgb
+from app.format.colours import Palette, Theme
 from app.format.load_colours import load_colours
 from app.view3d.labels import BELOW
 from app.view3d.meshes.measures import Measures
 from app.view3d.meshes.solids import lathe, light
-from app.view3d.nodes import Frame, paint, update
+from app.view3d.nodes import Frame, on_both_sides, paint, update
 from app.view3d.snapshot import SIDES, Poses, Scene, Snapshot
 
 IN_AIR = (255, 42, 42)  # of the ring around a wheel that has left the ground
@@ -89,7 +89,7 @@ class TractionArrows:
         self._arrows.visible = on["traction"]
 
     def colour(self, theme: Theme, palette: Palette) -> None:
-        self._arrows.colors = np.tile(light(np.array([rgb(c) for c in palette.wheels])), (len(SIDES), 1))
+        self._arrows.colors = on_both_sides(palette.wheels)
 
     def draw(self, scene: Scene, now: Snapshot) -> None:
         if self._arrows.visible:

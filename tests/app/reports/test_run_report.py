@@ -18,7 +18,7 @@ from app import cli
 from app.format.differences import figure_text
 from app.format.markup import Html
 from app.reports import run_report as report
-from app.reports.drawings import LIGHT, Drawing
+from app.reports.drawings import LIGHT_LOOK, Drawing
 from app.reports.run_report import report_page, ride_rows
 from model import load_config, simulate
 from model.analysis.ride import summary
@@ -42,7 +42,7 @@ def unpainted(monkeypatch) -> None:
     """Pictures are composed, but not painted: that takes most of the time."""
 
     def compose(drawing: Drawing, caption: str = "", suffix: str = "") -> Html:
-        drawing.draw(Figure(figsize=(drawing.width, drawing.height)), LIGHT)
+        drawing.draw(Figure(figsize=(drawing.width, drawing.height)), LIGHT_LOOK)
         return Html()
 
     monkeypatch.setattr(report, "picture", compose)
