@@ -3,7 +3,7 @@ PYTHON := $(firstword $(shell command -v python3.11) $(shell command -v python3)
 BIN := .venv/bin
 AS_ROOT := $(if $(filter-out 0,$(shell id -u)),sudo,)
 
-.PHONY: setup run test check bounds bench chromium readme paper pictures clean
+.PHONY: setup run test check bounds bench chromium readme structure paper pictures clean
 
 setup: .venv/ready
 
@@ -18,8 +18,11 @@ setup: .venv/ready
 run: setup
 	$(BIN)/trackride explore
 
+# One process for the browser's tests, which wait most of the time, one for all others; then both for what is left. What
+# both need is compiled before: numba's cache on disk knows nothing of two that fill it at once.
 test: setup chromium
-	$(BIN)/python -m pytest
+	$(BIN)/python -c "from app.server import prepare; prepare()"
+	$(BIN)/python -m pytest --numprocesses 2
 
 chromium:
 	@command -v chromium chromium-browser google-chrome >/dev/null || { $(AS_ROOT) apt-get update && $(AS_ROOT) apt-get install -y chromium; }
@@ -38,6 +41,9 @@ bench: setup
 
 readme: setup
 	$(BIN)/python -m tests.readme
+
+structure: setup
+	$(BIN)/python -m tests.structure
 
 paper: setup
 	$(BIN)/trackride paper --out build/paper
