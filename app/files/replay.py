@@ -1,4 +1,4 @@
-"""A run as one HTML file that opens from disk and plays: recorded off a throwaway server of its own."""
+"""A run as one HTML file that opens from disk and plays: recorded from a server that is made for it and thrown away."""
 
 from __future__ import annotations
 
@@ -56,9 +56,9 @@ def replay_html(
     """A standalone page in which the run plays, can be scrubbed and looked at from all sides.
 
     baseline: another run, which goes along as a ghost. title: plain text, shown above the view and as the page's name.
-    A run longer than LONGEST is cut there, and the page says so. Takes a few seconds; not for an event loop. None when
-    `should_stop`, asked before each frame, says so. road: under a stretch of a drive, which has no ghost; a run has
-    that of its configuration.
+    A run longer than LONGEST is cut there, and the page says so. It takes a few seconds: do not call it on an event
+    loop. Returns None when `should_stop`, called before each frame, returns True. road: under a stretch of a drive,
+    which has no ghost; a run has the road of its configuration.
     """
     duration = float(trajectory.t[-1] - trajectory.t[0])
     if duration > LONGEST:

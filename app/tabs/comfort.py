@@ -13,7 +13,7 @@ from model.analysis.ride import Row
 from model.analysis.signals import CENTRE_OF_MASS, seat
 from model.simulation.trajectory import Trajectory
 
-LEAST = 1e-3  # of all figures: a smaller one of the baseline is as good as nothing
+LEAST = 1e-3  # of all figures: if the baseline's is smaller, a change in % means nothing
 
 
 class ComfortFigure(NamedTuple):
@@ -45,11 +45,11 @@ COMFORT_FIGURES = (
     ComfortFigure(
         "Crest factor",
         "",
-        "peak of up and down / its rms: over 9, the rms tells too little",
+        "peak of up and down / its rms: above 9, the rms says too little",
         lambda of: of.crest_factor,
     ),
     ComfortFigure(
-        "VDV", "m/s¹·⁷⁵", "dose of up and down: it tells jolts, and grows with time", lambda of: of.dose, True
+        "VDV", "m/s¹·⁷⁵", "dose of up and down: it shows jolts, and grows with time", lambda of: of.dose, True
     ),
     ComfortFigure(
         "MTVV",
@@ -60,7 +60,7 @@ COMFORT_FIGURES = (
     ComfortFigure(
         "Absorbed power",
         "W",
-        f"by a sitting person (Pradko and Lee); {POWER_LIMIT:g} W is held to be the most that crews bear for long",
+        f"by a sitting person (Pradko and Lee); {POWER_LIMIT:g} W is taken as the most that crews bear for long",
         lambda of: of.absorbed_power,
     ),
 )
@@ -93,10 +93,11 @@ def comfort_page(run: Trajectory, baseline: Trajectory | None = None) -> str:
         same_length = before is not None and other is not None and run.t[-1] - felt.since == other.t[-1] - before.since
         tables.append(_table(place, felt, before, same_length))
     stretch = (
-        f"From {felt.since:.1f} s on, when the start has died away" if felt.since > run.t[0] else "Of all there is"
+        f"From {felt.since:.1f} s on, when the start has died away" if felt.since > run.t[0] else "Over the whole run"
     )
     words = (
-        "up and along the level, not the hull's floor. The words are ISO 2631-1's; where they overlap, the harsher one."
+        "vertical and horizontal, not turned with the hull. The words are those of ISO 2631-1; where two apply, "
+        "the harsher one."
     )
     meanings = (
         element("li", element("b", figure.name), ": ", words_html(figure.meaning), ".") for figure in COMFORT_FIGURES

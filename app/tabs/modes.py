@@ -1,4 +1,4 @@
-"""The vehicle's own ways to swing, as HTML and as choices. Pure."""
+"""The vehicle's natural modes, as HTML and as choices. Pure."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from model.analysis.modes import BOUNCE, PITCH, SURGE, Creep, Mode, Modes
 WORTH_TELLING = 0.1  # of a mode's kinetic energy
 WORDS = {BOUNCE: "hull up and down", PITCH: "hull nodding", SURGE: "hull fore and aft"}
 NOTE = (
-    "Small motions about the vehicle at rest. Frequency: undamped. Damping: part of what would keep it from swinging. "
-    "The nearer v/λ and its multiples come to bounce or pitch, the harder the ride; damping flattens the peak."
+    "Small motions about the vehicle at rest. Frequency: undamped. Damping: share of the damping with which it "
+    "would no longer swing. "
+    "The nearer v/λ and its multiples come to bounce or pitch, the harder the ride; damping lowers the peak."
 )
 
 
@@ -25,7 +26,7 @@ def modes_page(excitation: float | None, modes: Modes | None) -> str:
     """HTML of what drives the vehicle, v/λ in Hz, and all its modes."""
     rows = []
     if excitation is not None:
-        meaning = "waves met each second: the road shakes here, and at multiples"
+        meaning = "waves met each second: the road shakes the vehicle at this frequency and its multiples"
         rows.append(["v/λ", f"{excitation:.2f} Hz", "", meaning])
     for number, mode in enumerate(() if modes is None else modes.swinging, 1):
         damping = f"{100 * mode.damping_ratio:.0f} %"
@@ -46,5 +47,5 @@ def moving(mode: Mode) -> str:
 
 def _creeping(creeping: Iterable[Creep]) -> Html:
     items = ", ".join(f"{creep.name} {creep.decay:.3g}" for creep in creeping)
-    summary = element("summary", "Over-damped: these creep back without swinging")
+    summary = element("summary", "Over-damped: these motions die away without swinging")
     return element("details", summary, element("p", f"How fast they die away, 1/s: {items}."))

@@ -1,4 +1,4 @@
-"""How far a run can be trusted: figures of its own correctness, warnings, what was assumed; as HTML. Pure."""
+"""How far a run can be trusted: checks of its correctness, warnings, what was assumed; as HTML. Pure."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ DRIFT_LIMIT = 1e-5  # m by which joints may be apart
 CLOSING_LIMIT = 0.5  # % of the energy turned over that may be unaccounted for
 FORCE_LIMIT = 1e-6  # of the weight that Newton's law may be broken by
 LEAST_SAMPLES = 2  # of a run that has an energy balance
-LEFT_OPEN = "How deep the wheels sink into the ground is judged when the drive pauses."
+LEFT_OPEN = "How deep the wheels sink into the ground is checked when the drive pauses."
 
 
 class Check(NamedTuple):
@@ -26,13 +26,13 @@ class Check(NamedTuple):
     name: str
     value: str  # with its unit
     meaning: str
-    good: bool | None = None  # None: nothing to be judged
+    good: bool | None = None  # None: there is nothing to judge
 
 
 def trust_html(run: Trajectory, driving: bool = False, road: Road | None = None) -> str:
     """HTML of figures and warnings. driving: the run is a stretch of an endless drive, without balances of its own.
 
-    road: under that stretch; without it, how deep its wheels sank is left open.
+    road: under that stretch; without it nothing is said of how deep its wheels sank.
     """
     if len(run.t) < LEAST_SAMPLES:
         return page(element("p", f"There is nothing to judge: {run.status}."))
@@ -51,7 +51,7 @@ def trust_html(run: Trajectory, driving: bool = False, road: Road | None = None)
 
 
 def errata_html() -> str:
-    """HTML of what was settled beyond the paper."""
+    """HTML of what had to be assumed beyond the paper."""
     items = (element("li", *_erratum(erratum)) for erratum in ERRATA)
     return page(element("h4", "Assumed beyond the paper, and its misprints"), element("ol", *items))
 

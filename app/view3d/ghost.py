@@ -1,4 +1,4 @@
-"""The ghost: another run's vehicle in pale lines, in the place of the present one, so that postures compare.
+"""The ghost: another run's vehicle in pale lines, at the place of the present one, so that their poses can be compared.
 
 Lines only: translucent faces would mix with the vehicle's own, in patches, where both stand nearly alike.
 """
@@ -16,7 +16,7 @@ from app.view3d.snapshot import SIDES, Scene
 GHOST = "/ghost"
 THICKNESS = 0.022  # m, of its lines, at the size of the paper's vehicle
 CORNERS = 32  # of a wheel's circle
-OUTSIDE = 0.035  # m from what a line stands for outwards, at the size of the paper's vehicle
+OUTSIDE = 0.035  # m that a line is drawn outside of the part it outlines, at the size of the paper's vehicle
 
 
 class Outline:

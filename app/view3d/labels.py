@@ -1,4 +1,4 @@
-"""The wheels' names under the vehicle, with the loads they carry if wanted."""
+"""The wheels' names under the vehicle, with the loads that they carry if the user wants them."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class WheelLabels:
             self._arrange()
 
     def write(self, load: np.ndarray, unit: LoadUnit) -> None:
-        """Say these loads (W,), N, in the model's order, in that unit, if loads are shown."""
+        """Write these loads (W,), N, in the model's order, in that unit, if loads are shown."""
         if self._with_loads:
             if self._unit.text != unit.name:
                 self._unit.text = unit.name
@@ -63,7 +63,7 @@ class WheelLabels:
             self._say(self._names)
 
     def _say(self, texts: list[str]) -> None:
-        """Nothing is sent where a label reads so already."""
+        """Write the labels' texts; nothing is sent for a label that has its text already."""
         for label, text, before in zip(self._labels, texts, self._texts, strict=True):
             if text != before:
                 update(label, text=text)

@@ -1,4 +1,4 @@
-"""The viser nodes of a vehicle, of its road and of what lies around: made once for a shape, moved by snapshots."""
+"""The viser nodes of a vehicle, its road and its surroundings: made once for a shape, moved by snapshots."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def update(node: viser.SceneNodeHandle, **properties: Any) -> None:
 
 
 def paint(lines: viser.LineSegmentsHandle, colour: Colour) -> None:
-    """Give all segments one colour: viser takes one for all only when they are made."""
+    """Give all segments one colour: once they are made, viser takes a colour for each end only."""
     lines.colors = np.full(lines.points.shape, light(np.array(colour)))
 
 
@@ -108,7 +108,7 @@ class VehicleNodes:
         self._arrows.visible = on["arrows"]
 
     def on_click(self, act: Callable[[int], None]) -> None:
-        """Call act(wheel), which must not block, when the user clicks a wheel; counted as in a run's arrays."""
+        """Call act(wheel), which must not block, when the user clicks a wheel; numbered as in a run's arrays."""
 
         def pick(batch: str, first: int, count: int, of_side: int) -> None:
             async def picked(event: Any) -> None:
@@ -137,7 +137,7 @@ class VehicleNodes:
     def _plain(
         self, name: str, parts: list[Part], poses: Poses, sizes: np.ndarray | None = None
     ) -> viser.BatchedMeshHandle:
-        """Instances of a mesh that are to have a colour each."""
+        """Instances of a mesh, each of which has a colour of its own."""
         return self._api.add_batched_meshes_simple(
             f"{VEHICLE}/{name}", *joined(parts), poses.wxyzs, poses.positions, batched_scales=sizes, lod="off"
         )

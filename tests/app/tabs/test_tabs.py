@@ -126,7 +126,7 @@ def test_the_ride_in_a_line_and_in_a_table(run: Trajectory) -> None:
     assert cells_of(text, "Both, m/s²") == [[figure_text(felt.total)], [figure_text(hull.total)]]
     assert cells_of(text, "In words") == [["fairly uncomfortable"], ["a little uncomfortable"]]
     assert "From 4.8 s on" in text
-    assert "Of all there is" in comfort_page(make_run(PAPER.replace({"road.type": "flat"})))
+    assert "Over the whole run" in comfort_page(make_run(PAPER.replace({"road.type": "flat"})))
 
 
 def test_the_ride_beside_a_baselines(run: Trajectory) -> None:
