@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Callable
 from typing import NamedTuple
 
 from app.format.differences import NONE, figure_text
-from app.format.markup import page, words_html
+from app.format.markup import Content, Html, cell, element, page, table, words_html
 from app.tabs.comparison import cells
 from model.analysis.comfort import MOST_CREST, POWER_LIMIT, Comfort, ride_comfort
 from model.analysis.figures import DOSE, POWER, SHOCK, TRANSIENT, WEIGHTED, Row, percent
@@ -15,10 +14,10 @@ from model.analysis.ride import figure_warnings
 from model.analysis.signals import CENTRE_OF_MASS, same_window, seat, window
 from model.simulation.trajectory import Trajectory
 
-LEAST = 1e-3  # of all figures: a smaller one of the baseline is as good as nothing
+LEAST = 1e-3  # of all figures: if the baseline's is smaller, a change in % means nothing
 
 
-class Figure(NamedTuple):
+class ComfortFigure(NamedTuple):
     """One line of the table."""
 
     name: str
@@ -28,30 +27,47 @@ class Figure(NamedTuple):
     grows: bool = False  # with the time over which it is taken
 
 
-FIGURES = (
-    Figure(
+COMFORT_FIGURES = (
+    ComfortFigure(
         "Up and down", WEIGHTED.unit, "rms weighted by W_k of ISO 2631-1: 5 to 8 Hz count most", lambda of: of.vertical
     ),
-    Figure("Fore and aft", WEIGHTED.unit, "rms weighted by W_d: 0.5 to 2 Hz count most", lambda of: of.fore_aft),
-    Figure("Both", WEIGHTED.unit, "root of the sum of their squares: what the words are about", lambda of: of.total),
-    Figure(
+    ComfortFigure(
+        "Fore and aft",
+        WEIGHTED.unit,
+        "rms weighted by W_d: 0.5 to 2 Hz count most",
+        lambda of: of.fore_aft,
+    ),
+    ComfortFigure(
+        "Both",
+        WEIGHTED.unit,
+        "root of the sum of their squares: what the words are about",
+        lambda of: of.total,
+    ),
+    ComfortFigure(
         "Crest factor",
         "",
-        f"peak of up and down / its rms: over {MOST_CREST:g}, the rms tells too little; use MTVV or VDV",
+        f"peak of up and down / its rms: above {MOST_CREST:g}, the rms says too little; use MTVV or VDV",
         lambda of: of.crest_factor,
     ),
-    Figure("VDV", DOSE.unit, "dose of up and down: it tells jolts, and grows with time", lambda of: of.dose, True),
-    Figure("MTVV", TRANSIENT.unit, "rms of the worst second of up and down", lambda of: of.transient),
-    Figure(
+    ComfortFigure(
+        "VDV", DOSE.unit, "dose of up and down: it shows jolts, and grows with time", lambda of: of.dose, True
+    ),
+    ComfortFigure(
+        "MTVV",
+        TRANSIENT.unit,
+        "rms of the worst second of up and down",
+        lambda of: of.transient,
+    ),
+    ComfortFigure(
         "Shock",
         SHOCK.unit,
-        "largest of up and down, not weighted, behind a low-pass of 30 Hz; 2.5 g is held to be the limit",
+        "largest of up and down, not weighted, behind a low-pass of 30 Hz; 2.5 g is taken as the limit",
         lambda of: of.shock,
     ),
-    Figure(
+    ComfortFigure(
         "Absorbed power",
         POWER.unit,
-        f"by a sitting person (Pradko and Lee); {POWER_LIMIT:g} W is held to be the most that crews bear for long",
+        f"by a sitting person (Pradko and Lee); {POWER_LIMIT:g} W is taken as the most that crews bear for long",
         lambda of: of.absorbed_power,
     ),
 )
@@ -60,26 +76,28 @@ PLACES = ((SEAT, seat), ("Centre of mass", lambda config: CENTRE_OF_MASS))
 
 
 def comfort_headline(run: Trajectory) -> str:
-    """HTML: the ride in a line."""
+    """HTML of the ride in a line."""
     if not len(run.t):
         return ""
     felt = ride_comfort(run, seat(run.config))
     if felt is None:
-        rate = f"{run.config.simulation.output_rate:g}"
-        return f'<div class="trackride-comfort">Driver\'s seat: {NONE} (too few samples: {rate} a second)</div>'
-    sign = "bad" if felt.absorbed_power > POWER_LIMIT else ""
+        words = f"Driver's seat: {NONE} (too few samples: {run.config.simulation.output_rate:g} a second)"
+        return str(element("div", words, class_="trackride-comfort"))
+    power = element(
+        "span",
+        f"{figure_text(felt.absorbed_power)} W",
+        class_="bad" if felt.absorbed_power > POWER_LIMIT else None,
+    )
+    seat_words = "Driver's seat: ", element("b", felt.reaction), f", {figure_text(felt.total)} m/s² weighted · "
     alarms = ["run too short"] if felt.window.shortfall else []
     if felt.crest_factor is not None and felt.crest_factor > MOST_CREST:
         alarms.append(f"crest factor {figure_text(felt.crest_factor)}")
-    said = "".join(f' · <span class="bad">{alarm}</span>' for alarm in alarms)
-    return (
-        f'<div class="trackride-comfort">Driver\'s seat: <b>{felt.reaction}</b>, {figure_text(felt.total)} m/s² '
-        f'weighted · <span class="{sign}">{figure_text(felt.absorbed_power)} W</span> absorbed{said}</div>'
-    )
+    said = (part for alarm in alarms for part in (" · ", element("span", alarm, class_="bad")))
+    return str(element("div", *seat_words, power, " absorbed", *said, class_="trackride-comfort"))
 
 
 def comfort_page(run: Trajectory, baseline: Trajectory | None = None) -> str:
-    """HTML: all figures at both places, now and of the baseline, what they are taken from and what they mean."""
+    """HTML of all figures at both places, now and of the baseline, what they are taken from and what they mean."""
     if not len(run.t):
         return ""
     other = baseline if baseline is not None and len(baseline.t) else None
@@ -91,32 +109,30 @@ def comfort_page(run: Trajectory, baseline: Trajectory | None = None) -> str:
             felt_by_driver = felt
         if felt is not None:
             tables.append(_table(place, felt, None if other is None else ride_comfort(other, point(other.config))))
-    cautions = "".join(
-        f'<p class="bad">{html.escape(str(warning))}</p>'
-        for warning in figure_warnings(run.config, taken, felt_by_driver)
+    cautions = (element("p", str(each), class_="bad") for each in figure_warnings(run.config, taken, felt_by_driver))
+    words = (
+        f"Taken {taken.why}; vertical and horizontal, not turned with the hull. The words are those of ISO 2631-1; "
+        "where two apply, the harsher one."
     )
-    meanings = "".join(f"<li><b>{figure.name}</b>: {words_html(figure.meaning)}.</li>" for figure in FIGURES)
-    return page(
-        f"<h4>Ride comfort</h4>{cautions}{''.join(tables)}<p>Taken {taken.why}; up and along the level, not the hull's "
-        f"floor. The words are ISO 2631-1's; where they overlap, the harsher one.</p><ul>{meanings}</ul>"
+    meanings = (
+        element("li", element("b", figure.name), ": ", words_html(figure.meaning), ".") for figure in COMFORT_FIGURES
     )
+    return page(element("h4", "Ride comfort"), *cautions, *tables, element("p", words), element("ul", *meanings))
 
 
-def _table(place: str, now: Comfort, baseline: Comfort | None) -> str:
+def _table(place: str, now: Comfort, baseline: Comfort | None) -> Html:
     compared = baseline is not None
-    heads = "".join(f"<th>{text}</th>" for text in (place, "now", *(("baseline", "change") if compared else ())))
-    lines = [f"<tr>{heads}</tr>"]
-    for figure in FIGURES:
+    lines: list[list[Content]] = []
+    for figure in COMFORT_FIGURES:
         row = _row(figure, now, baseline)
-        label = f"{row.figure}, {row.unit}" if row.unit else row.figure
-        lines.append(f"<tr><td>{label}</td>{''.join(cells(row, compared))}</tr>")
+        lines.append([f"{row.figure}, {row.unit}" if row.unit else row.figure, *cells(row, compared)])
     words = [now.reaction] if baseline is None else [now.reaction, baseline.reaction, ""]
-    said = "".join(f'<td class="words">{word}</td>' for word in words)
-    lines.append(f"<tr><td>In words</td>{said}</tr>")
-    return f'<table class="trackride-figures felt">{"".join(lines)}</table>'
+    lines.append(["In words", *(cell(word, class_="words") for word in words)])
+    heads = (place, "now", *(("baseline", "change") if compared else ()))
+    return table(heads, lines, "trackride-figures felt", titled=False)
 
 
-def _row(figure: Figure, now: Comfort, baseline: Comfort | None) -> Row:
+def _row(figure: ComfortFigure, now: Comfort, baseline: Comfort | None) -> Row:
     value, reference, change = figure.value(now), None, None
     if baseline is not None:
         reference = figure.value(baseline)
