@@ -6,7 +6,8 @@
 if (!window.trackridePlots) {
   const TIME = 'trackride-time';
   const met = new WeakSet(), inView = new WeakSet();  // charts
-  const groups = {};  // of charts, by their sync key: marks [[x, name], …] and zoom [from, to] as parts of the data's range
+  const groups = {};  // of charts, by their sync key: marks [[x, name], …], zoom [from, to] as parts of the data's range,
+                      // and window [from, to] of x, or null
   const hidden = {};  // names of curves, by the chart's unit and curves: they stay so when a chart is made anew
   const charts = () => Object.values(window.__viserTestpoints?.uplots ?? {}).map((entry) => entry.chart);
   const group = (key) => (key ?? '').startsWith('trackride-') ? groups[key] ??= {marks: [], zoom: [0, 1]} : undefined;
@@ -28,6 +29,17 @@ if (!window.trackridePlots) {
       line.classList.toggle('left', x > 0.7 * width);
       line.dataset.name = name;
     });
+  };
+  const frame = (chart) => {  // two thin lines at the ends of the stretch that figures are taken from
+    const span = groupOf(chart).window;
+    let layer = chart.over.querySelector('.trackride-window');
+    if (!span) return layer?.remove();
+    if (!layer) {
+      chart.over.append(layer = Object.assign(document.createElement('div'), {className: 'trackride-window'}));
+      layer.append(document.createElement('b'));
+    }
+    const [from, to] = span.map((at) => chart.valToPos(at, 'x')), {style} = layer.firstChild;
+    [style.left, style.width] = [`${from}px`, `${to - from}px`];
   };
   const read = (chart) => {
     const [now, name] = groupOf(chart).marks[0] ?? [];
@@ -139,6 +151,7 @@ if (!window.trackridePlots) {
       drawInFront(chart);
       if (drawn) shared.zoom = [(min - first) / (last - first), (max - first) / (last - first)];
       point(chart);
+      frame(chart);
       drawMaps();
       requestAnimationFrame(() => read(chart));
     });
@@ -153,6 +166,7 @@ if (!window.trackridePlots) {
       if (!inView.has(chart)) zoom(chart);
       inView.add(chart);
       point(chart);
+      frame(chart);
       read(chart);
     });
   };
@@ -227,6 +241,13 @@ if (!window.trackridePlots) {
       const marks = JSON.parse(this.getAttribute('at'));
       group(this.getAttribute('for')).marks = marks;
       if (marks[0]?.[1] === '') now = marks[0][0];
+      window.trackridePlots();
+    }
+  });
+
+  customElements.define('trackride-span', class extends HTMLElement {
+    connectedCallback() {
+      group(TIME).window = JSON.parse(this.getAttribute('at'));
       window.trackridePlots();
     }
   });

@@ -11,6 +11,8 @@ from app.format.assets import asset
 from app.format.markup import element, joined, running, style
 from app.panels.charts import OTHER_KEY, TIME_KEY
 from app.plots.spectrum import Mark
+from model.analysis.signals import window
+from model.simulation.trajectory import Trajectory
 
 
 def plot_page() -> str:
@@ -26,6 +28,16 @@ def tab_html(name: str) -> str:
 def now_html(time: float) -> str:
     """HTML that moves the time cursor in all plots."""
     return _marks_html(TIME_KEY, [(round(time, 4), "")])
+
+
+def window_html(run: Trajectory) -> str:
+    """HTML that marks in all plots over time which stretch of a run its figures are taken from; nothing for all."""
+    if not len(run.t):
+        return ""
+    taken = window(run)
+    whole = (taken.start, taken.end) == (run.t[0], run.t[-1])
+    span = None if whole else (round(taken.start, 4), round(taken.end, 4))
+    return str(element("trackride-span", at=json.dumps(span)))
 
 
 def marks_html(marks: tuple[Mark, ...]) -> str:

@@ -20,7 +20,7 @@ from app.format.markup import element
 from app.panels.actions import Actions
 from app.panels.charts import Charts
 from app.panels.page_layout import chart_height, spectrum_height
-from app.panels.plot_page import now_html, plot_page, tab_html
+from app.panels.plot_page import now_html, plot_page, tab_html, window_html
 from app.panels.spectrum_panel import BELOW_CHART, SpectrumPanel
 from app.plots.curves import Plot, load_plots
 from app.plots.ride import ride_plots
@@ -89,6 +89,7 @@ class PlotPanel:
         with tabs[LOADS]:
             gui.add_html(plot_page())
             self._now = gui.add_html(now_html(0.0))
+            self._window = gui.add_html("")
         self._spectrum_part = Part(SPECTRUM, self._show_spectrum)
         self._parts = (
             Part(LOADS, self._show_loads, quick=True),
@@ -115,6 +116,9 @@ class PlotPanel:
         self._run, self._baseline, self._driving, self._road = run, baseline, driving, road
         self._shown_at = monotonic()
         self._follow()
+        marked = window_html(run)
+        if self._window.content != marked:
+            self._window.content = marked
         self.spectrum.offer_modes(not driving)
         self.point_at(time)
 

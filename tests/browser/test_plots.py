@@ -168,6 +168,20 @@ def test_the_ride_is_told_in_a_line_and_in_tables(at_rest: Explorer) -> None:
     expect(tables.first).to_contain_text("Absorbed power, W")
 
 
+def test_thin_lines_show_from_which_stretch_the_figures_are_taken(at_rest: Explorer) -> None:
+    page = at_rest.page
+    show(page, "Ride")
+    page.wait_for_function(f"() => ({CHARTS})().every(chart => chart.over.querySelector('.trackride-window'))")
+    ends = page.evaluate(f"""() => ({CHARTS})().map(chart => {{
+        const {{offsetLeft: left, offsetWidth: width}} = chart.over.querySelector('.trackride-window b');
+        return [chart.posToVal(left, 'x'), chart.posToVal(left + width, 'x')];
+    }})""")
+    assert len(ends) == 4
+    for start, end in ends:  # of the paper's run: the steady part
+        assert abs(start - 4.76) < 0.05
+        assert abs(end - 10) < 0.05
+
+
 def test_a_mode_swings_in_the_3d_view_until_the_run_is_played(at_rest: Explorer) -> None:
     page = at_rest.page
     show(page, "Spectrum")
