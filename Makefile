@@ -18,8 +18,11 @@ setup: .venv/ready
 run: setup
 	$(BIN)/trackride explore
 
+# One process for the browser's tests, which wait most of the time, one for all others; then both for what is left. What
+# both need is compiled before: numba's cache on disk knows nothing of two that fill it at once.
 test: setup chromium
-	$(BIN)/python -m pytest
+	$(BIN)/python -c "from app.server import prepare; prepare()"
+	$(BIN)/python -m pytest --numprocesses 2
 
 chromium:
 	@command -v chromium chromium-browser google-chrome >/dev/null || { $(AS_ROOT) apt-get update && $(AS_ROOT) apt-get install -y chromium; }

@@ -15,7 +15,7 @@ SOURCES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob
 
 # A module imports from rows above its own only. Modules not named stand below all of these.
 ROWS = (
-    ("model.compiled", "model.files", "model.config.parameters", "model.config.strict_yaml"),
+    ("model.compiled", "model.dynamics.ground", "model.files", "model.config.parameters", "model.config.strict_yaml"),
     ("model.config.profile_points", "model.road.nearest_point"),
     ("model.config.validation", "model.road.table"),
     ("model.config.config", "model.road.profile"),

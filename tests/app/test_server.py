@@ -126,7 +126,8 @@ def test_no_visitor_can_open_a_tunnel(explore: Any, open_tab: Any, monkeypatch: 
 
 
 def test_it_says_where_it_is_and_ends_on_interrupt(taken: int) -> None:
-    code = (
+    code = (  # whoever starts the tests in the background has their children ignore interrupts
+        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
         "from model.config.config import load_config; from app.server import serve; "
         f"serve(load_config('paper'), 'paper', port={taken}, open_browser=False)"
     )

@@ -1,4 +1,4 @@
-"""One explorer, one browser and one tab for all tests, and more tabs where one is not enough."""
+"""One explorer, one browser and one tab for all tests of this folder, and more tabs where one is not enough."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ OpenTab = Callable[..., Explorer]
 SIZE: ViewportSize = {"width": 1280, "height": 720}
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def address() -> Iterator[str]:
     with running_explorer() as address:
         yield address
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def browser() -> Iterator[Browser]:
     with chromium() as browser:
         yield browser
@@ -47,7 +47,7 @@ def open_tab(browser: Browser, address: str) -> Iterator[OpenTab]:
         context.close()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def shared(browser: Browser, address: str) -> Iterator[Explorer]:
     context = new_context(browser)
     yield Explorer(context.new_page()).open(f"{address}/?fixedDpr=0.25")

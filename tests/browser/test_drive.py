@@ -8,7 +8,7 @@ from time import monotonic
 
 from playwright.sync_api import expect
 
-from tests.browser.driver import NEW_CURVES, SOON, Explorer
+from tests.browser.driver import DOWNLOAD, NEW_CURVES, SOON, Explorer
 
 # Whether the line that tells the stretch of the drive is there and covers no other text and no box.
 CLEAR = """() => {
@@ -102,7 +102,7 @@ def test_the_drive_goes_on_follows_sliders_and_rests_in_the_background(at_rest: 
 
 
 def test_keys_work_outside_of_text_boxes_only(at_rest: Explorer) -> None:
-    page = at_rest.page
+    page, run = at_rest.page, at_rest.run_number()
     downloads: list[object] = []
     page.on("download", lambda download: downloads.append(download))
     at_rest.press("Time, s", "End")
@@ -111,15 +111,17 @@ def test_keys_work_outside_of_text_boxes_only(at_rest: Explorer) -> None:
     box.click()
     for key in (" ", "s", "b", "d", "f", "r"):
         page.keyboard.press(key)
-    page.wait_for_timeout(1500)
-    assert downloads == []
+    assert page.evaluate("document.activeElement.tagName") == "INPUT"
+    box.blur()
+    with page.expect_download(timeout=DOWNLOAD):  # what the keys before it had asked for would come before
+        page.keyboard.press("s")
+    page.keyboard.press("Shift+ArrowLeft")
+    at_rest.wait_for_value("Time, s", "now < 9.95")
+    assert len(downloads) == 1
+    assert at_rest.run_number() == run
     assert at_rest.button("▶ Play").is_visible()
     assert at_rest.button("● Run").is_visible()
 
-    assert page.evaluate("document.activeElement.tagName") == "INPUT"
-    box.blur()
-    page.keyboard.press("Shift+ArrowLeft")
-    at_rest.wait_for_value("Time, s", "now < 9.95")
     page.keyboard.press(" ")
     expect(at_rest.button("Pause")).to_be_visible()
     page.keyboard.press(" ")

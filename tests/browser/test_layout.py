@@ -47,7 +47,7 @@ def test_no_box_moves_while_a_slider_is_dragged(at_rest: Explorer, tab: str) -> 
         page.wait_for_timeout(100)
     page.mouse.up()
     at_rest.wait_for_run(after=before)
-    page.wait_for_timeout(500)
+    at_rest.wait_until_still(lambda: page.evaluate(ARRANGED))
     seen = page.evaluate(SEEN)
     moved = [(old, new) for old, new in zip(seen[0], seen[-1], strict=False) if old != new]
     assert len(seen) == 1, f"{len(seen)} arrangements were seen: {json.dumps(moved[:10])}"

@@ -202,6 +202,7 @@ def test_a_wheel_hidden_in_a_plot_takes_its_baseline_along(at_rest: Explorer) ->
 
 def test_the_other_tabs_show_spectrum_map_trust_and_equations(at_rest: Explorer) -> None:
     page = at_rest.page
+    page.keyboard.press("b")  # a baseline, whose load maps stand under the run's
     show(page, "Spectrum")
     names = page.locator(".trackride-frequency .trackride-marks i")
     expect(names).to_have_count(3)
