@@ -16,6 +16,8 @@ from model.compiled import compiled, inlined
 from model.dynamics.kernel import constraint_residual, loads, multipliers, rates
 from model.dynamics.lanes import INT_E, WORK, places, state_size
 from model.dynamics.vehicle import System
+from model.simulation.dense import CUBIC, SPARE, state_within
+from model.simulation.extremes import begin, follow
 
 STEPS_PER_SECOND = 50_000  # of simulated time, at most; five hundred times what the paper's vehicle needs
 SMALLEST_STEP = 1e-10  # s
@@ -54,13 +56,14 @@ class Samples(NamedTuple):
     F: np.ndarray  # (N,)
     lam: np.ndarray  # (N, rows of C)
     residual: np.ndarray  # (N,)
+    work: np.ndarray  # (N,) J
 
 
 def make_samples(system: System, count: int) -> Samples:
     """Room for that many samples, in one piece: a large one is had from the system in large pages, which is quicker."""
     B, W = len(system.mass), len(system.wheel)
     rows = 2 * len(system.joint_i) + int(system.prescribed)
-    shapes = [(count, *shape) for shape in [(B, 3), (B, 3), (B, 3), (W,), (W,), (W,), (), (rows,), ()]]
+    shapes = [(count, *shape) for shape in [(B, 3), (B, 3), (B, 3), (W,), (W,), (W,), (), (rows,), (), ()]]
     ends = np.cumsum([0, *map(prod, shapes)])
     block = np.empty(ends[-1])
     parts = (block[first:end].reshape(shape) for first, end, shape in zip(ends, ends[1:], shapes, strict=False))
@@ -89,15 +92,6 @@ def make_clock(step: float) -> Any:
     clock = np.recarray(1, CLOCK)
     clock[0] = (0.0, step, np.inf, 1e-4, 0, 0, 0, 0, 0, Status.RUNNING, 0)
     return clock[0]
-
-
-class Memory(NamedTuple):
-    """A stepper's arrays, its own to change; `size` entries of the flat state."""
-
-    y: np.ndarray  # (size,) the state now
-    y_new: np.ndarray  # (size,) at the end of a step
-    between: np.ndarray  # (size,) at a stage or a sample
-    k: np.ndarray  # (STAGES, size) derivatives: k[0] at y, then of the stages
 
 
 class Span(NamedTuple):
@@ -140,6 +134,7 @@ def record(lanes, road, t, y, dy, work, samples, k):
         samples.xi[k, wheel] = y[lanes.xi_place[wheel]]
     samples.F[k] = work.F[0]
     samples.residual[k] = constraint_residual(lanes, t, y, work)
+    samples.work[k] = y[WORK]
 
 
 @compiled
@@ -276,11 +271,6 @@ STRETCHED = Tableau(
 )
 
 
-STAGES = 7  # rows of Memory.k
-SPARE = 1  # the row that is lent to samples: once a step is accepted, nothing needs it
-CUBIC = np.zeros(STAGES)  # nothing to add to cubic Hermite
-
-
 @inlined
 def _stage_state(weights, stage, h, memory):
     """The state of a stage: y + h Σ w_j k_j over the stages before it. Written out, each needs one pass."""
@@ -323,33 +313,13 @@ def _error_of(weights, h, memory, over_scale, states):
 
 
 @inlined
-def _state_within(dense, last, h, theta, memory):
-    """The state at t + θ h in the step from y to y_new: cubic Hermite, and what the tableau adds to it.
-
-    k[0] and k[last]: the derivatives at both ends.
-    """
-    size = len(memory.y)
-    y, y_new, out, k = memory.y, memory.y_new, memory.between, memory.k
-    first, final = k[0], k[last]
-    rest = 1.0 - theta
-    risen, begin, end = theta * theta * (3.0 - 2.0 * theta), h * theta * rest * rest, h * theta * theta * rest
-    for i in range(size):  # of few arrays at a time, so that it is done in lanes
-        out[i] = y[i] + risen * (y_new[i] - y[i]) + begin * first[i] - end * final[i]
-    d1, _, d3, d4, d5, d6, d7 = dense
-    if d1 != 0.0:
-        k3, k4, k5, k6, k7 = k[2], k[3], k[4], k[5], k[6]
-        for i in range(size):
-            out[i] += end * rest * (d1 * first[i] + d3 * k3[i] + d4 * k4[i] + d5 * k5[i] + d6 * k6[i] + d7 * k7[i])
-
-
-@inlined
 def _record_step(dense, last, lanes, road, work, memory, samples, clock, rate, t_new):
     """Record the samples of the step from clock.t to t_new, as far as there is room."""
     room = len(samples.residual) + clock.taken
     h = t_new - clock.t
     while clock.recorded < room and clock.recorded / rate <= t_new:
         t = clock.recorded / rate
-        _state_within(dense, last, h, (t - clock.t) / h, memory)
+        state_within(dense, last, h, (t - clock.t) / h, memory)
         record(lanes, road, t, memory.between, memory.k[SPARE], work, samples, clock.recorded - clock.taken)
         clock.recorded += 1
 
@@ -365,23 +335,24 @@ def _move_on(memory, last, clock, h, t_new):
 
 
 @inlined
-def _begin(lanes, road, work, memory, clock):
+def _begin(lanes, road, work, memory, extremes, clock):
     """Make sure that k[0] is the derivative at y."""
     if clock.fresh == 0:
         rates(lanes, road, clock.t, memory.y, memory.k[0], work)
+        begin(lanes, work, memory, extremes, clock.t)
         clock.evaluations += 1
         clock.fresh = 1
 
 
 @compiled
-def adaptive(tableau, lanes, road, work, memory, over_scale, samples, clock, span):
+def adaptive(tableau, lanes, road, work, memory, over_scale, samples, extremes, clock, span):
     """Steps of a Runge–Kutta pair until t ≥ span.stop, the run's end, trouble or STEPS_PER_CHUNK tries."""
     states = 6 * len(lanes.place) + len(lanes.xi_place) + 1  # without empty lanes
     last = tableau.stages - 1
     usual, after_rejection = 0.85 / tableau.order, 1.0 / tableau.order
     most_tries = clock.steps + clock.rejected + STEPS_PER_CHUNK
     most_growth = 5.0
-    _begin(lanes, road, work, memory, clock)
+    _begin(lanes, road, work, memory, extremes, clock)
     while clock.t < span.stop and clock.steps + clock.rejected < most_tries:
         h = min(clock.step, span.longest)
         for stage in range(1, tableau.stages):
@@ -395,6 +366,7 @@ def adaptive(tableau, lanes, road, work, memory, over_scale, samples, clock, spa
             if clock.status != Status.RUNNING.value:
                 break
             t_new = clock.t + h
+            follow(tableau.dense, last, lanes, road, work, memory, extremes, clock.t, h)
             _record_step(tableau.dense, last, lanes, road, work, memory, samples, clock, span.rate, t_new)
             _move_on(memory, last, clock, h, t_new)
             # Proportional-integral step control
@@ -419,14 +391,14 @@ def adaptive(tableau, lanes, road, work, memory, over_scale, samples, clock, spa
 
 
 @compiled
-def runge_kutta_4(lanes, road, work, memory, samples, clock, span):
+def runge_kutta_4(lanes, road, work, memory, samples, extremes, clock, span):
     """Steps of the classic method, all equally long, until t ≥ span.stop, the run's end, trouble or STEPS_PER_CHUNK."""
     size, h = len(memory.y), clock.step
     y, y_new, between, k = memory.y, memory.y_new, memory.between, memory.k
     k1, k2, k3, k4 = k[0], k[1], k[2], k[3]
     last = 4  # where the derivative at y_new stands
     most_steps = clock.steps + STEPS_PER_CHUNK
-    _begin(lanes, road, work, memory, clock)
+    _begin(lanes, road, work, memory, extremes, clock)
     while clock.t < span.stop and clock.steps < most_steps:
         t = clock.t
         for i in range(size):
@@ -446,6 +418,7 @@ def runge_kutta_4(lanes, road, work, memory, samples, clock, span):
         clock.status = trouble(lanes, y_new)
         if clock.status != Status.RUNNING.value:
             break
+        follow(CUBIC, last, lanes, road, work, memory, extremes, t, h)
         _record_step(CUBIC, last, lanes, road, work, memory, samples, clock, span.rate, t_new)
         _move_on(memory, last, clock, h, t_new)
     if clock.status == Status.RUNNING.value and clock.t >= span.end:
