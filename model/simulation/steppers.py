@@ -21,6 +21,8 @@ from model.simulation.extremes import begin, follow
 
 STEPS_PER_SECOND = 50_000  # of simulated time, at most; five hundred times what the paper's vehicle needs
 SMALLEST_STEP = 1e-10  # s
+MOST_FORCED = 100  # steps of this length in a row
+OVER = 2e-7  # s that take an arm over the beginning of a stop
 FASTEST = 1e3  # m/s: a body faster than this shows that the run has diverged
 STEPS_PER_CHUNK = 5_000  # so that a stop is heeded however stiff the run
 POWERS = 30  # of the Jacobian, to find its largest eigenvalue to a few per cent
@@ -29,7 +31,7 @@ SIZE_OF_SPEED = 1.0  # m/s or rad/s, what rtol is measured against: see error_sc
 SIZE_OF_POSITION = 0.1  # m or rad
 SIZE_OF_DISPLACEMENT = 0.1  # m
 NO_LIMIT = 1e30
-LIVELY = 0.75  # m/s: where a body rises or falls faster than this, errors may be larger in proportion
+LIVELY = 1.5  # m/s: where a body rises or falls faster than this, errors may be larger in proportion
 
 
 class Status(IntEnum):
@@ -82,6 +84,7 @@ CLOCK = np.dtype(
         ("recorded", "i8"),  # samples
         ("taken", "i8"),  # of these, taken away to make room
         ("status", "i8"),  # a Status
+        ("forced", "i8"),  # steps in a row that were accepted though their error was too large
         ("fresh", "i8"),  # 1 when the derivative at y is known
     ]
 )
@@ -90,7 +93,7 @@ CLOCK = np.dtype(
 def make_clock(step: float) -> Any:
     """What a stepper carries from step to step: a record of CLOCK's fields at t = 0. step: the first to be tried, s."""
     clock = np.recarray(1, CLOCK)
-    clock[0] = (0.0, step, np.inf, 1e-4, 0, 0, 0, 0, 0, Status.RUNNING, 0)
+    clock[0] = (0.0, step, np.inf, 1e-4, 0, 0, 0, 0, 0, Status.RUNNING, 0, 0)
     return clock[0]
 
 
@@ -344,6 +347,48 @@ def _begin(lanes, road, work, memory, extremes, clock):
         clock.fresh = 1
 
 
+@inlined
+def _before_stop(lanes, memory, h):
+    """How long a step from y to y_new of h s may be so that no arm meets a stop in it, s; h where none does.
+
+    The force of a stop begins with a jump where its damper takes hold, which no step may contain.
+    """
+    y, y_new = memory.y, memory.y_new
+    soonest = h
+    for arm in range(lanes.n):
+        angle, rate = lanes.place[1 + arm, 2], lanes.place[1 + arm, 5]
+        u, u_new, u_dot, u_dot_new = y[2] - y[angle], y_new[2] - y_new[angle], y[5] - y[rate], y_new[5] - y_new[rate]
+        stop = 0.0
+        if u <= lanes.stops.bump < u_new:
+            stop = lanes.stops.bump
+        elif u >= lanes.stops.rebound > u_new:
+            stop = lanes.stops.rebound
+        else:
+            continue
+        low, high = 0.0, 1.0
+        for _ in range(30):  # bisection on the cubic between the ends
+            theta = 0.5 * (low + high)
+            rest = 1.0 - theta
+            between = u + theta * theta * (3.0 - 2.0 * theta) * (u_new - u)
+            between += h * theta * rest * (rest * u_dot - theta * u_dot_new)
+            if (between > stop) == (u_new > stop):
+                high = theta
+            else:
+                low = theta
+        soonest = min(soonest, low * h)
+    return soonest
+
+
+@inlined
+def _step_over(lanes, road, work, memory, extremes, clock):
+    """Move on by so short a time that nothing changes but on which side of a stop an arm is."""
+    for i in range(len(memory.y)):
+        memory.y[i] += OVER * memory.k[0, i]
+    clock.t += OVER
+    clock.fresh = 0
+    _begin(lanes, road, work, memory, extremes, clock)
+
+
 @compiled
 def adaptive(tableau, lanes, road, work, memory, over_scale, samples, extremes, clock, span):
     """Steps of a Runge–Kutta pair until t ≥ span.stop, the run's end, trouble or STEPS_PER_CHUNK tries."""
@@ -352,6 +397,8 @@ def adaptive(tableau, lanes, road, work, memory, over_scale, samples, extremes, 
     usual, after_rejection = 0.85 / tableau.order, 1.0 / tableau.order
     most_tries = clock.steps + clock.rejected + STEPS_PER_CHUNK
     most_growth = 5.0
+    stopped = lanes.stops.bump < np.inf or lanes.stops.rebound > -np.inf
+    planned = 0.0  # step before it was cut short at a stop
     _begin(lanes, road, work, memory, extremes, clock)
     while clock.t < span.stop and clock.steps + clock.rejected < most_tries:
         h = min(clock.step, span.longest)
@@ -361,28 +408,42 @@ def adaptive(tableau, lanes, road, work, memory, over_scale, samples, extremes, 
         clock.evaluations += last
         error = _error_of(tableau.error, h, memory, over_scale, states) / liveliness(lanes, memory.y)
 
-        if error <= 1.0:
+        # At a jump of the forces no step is short enough; one of SMALLEST_STEP is too short to matter
+        if error <= 1.0 or (h <= SMALLEST_STEP and clock.forced < MOST_FORCED and np.isfinite(error)):
+            clock.forced = 0 if error <= 1.0 else clock.forced + 1
             clock.status = trouble(lanes, memory.y_new)
             if clock.status != Status.RUNNING.value:
                 break
+            if stopped:
+                free = _before_stop(lanes, memory, h)
+                if free < h:
+                    planned = max(planned, h)
+                    clock.rejected += 1
+                    if free > OVER:
+                        clock.step = free - 0.5 * OVER
+                    else:
+                        _step_over(lanes, road, work, memory, extremes, clock)
+                        clock.step, planned = planned, 0.0
+                    continue
             t_new = clock.t + h
             follow(tableau.dense, last, lanes, road, work, memory, extremes, clock.t, h)
             _record_step(tableau.dense, last, lanes, road, work, memory, samples, clock, span.rate, t_new)
             _move_on(memory, last, clock, h, t_new)
             # Proportional-integral step control
             factor = 0.9 * max(error, 1e-10) ** -usual * clock.last_error**0.04
-            clock.step = h * min(max(factor, 0.2), most_growth)
+            clock.step = max(h * min(max(factor, 0.2), most_growth), planned)
             clock.last_error = max(error, 1e-4)
             most_growth = 5.0
         else:
             clock.rejected += 1
-            most_growth = 1.0
+            most_growth, planned = 1.0, 0.0
             clock.step = h * (max(0.9 * error**-after_rejection, 0.2) if np.isfinite(error) else 0.2)
             if not np.isfinite(error):
                 memory.k[1:] = 0.0  # a stage's zero weights must not meet a NaN
-            if clock.step < SMALLEST_STEP:
+            if clock.step < SMALLEST_STEP and (h <= SMALLEST_STEP or not np.isfinite(error)):
                 clock.status = Status.STEP_TOO_SMALL.value if np.isfinite(error) else Status.NOT_FINITE.value
                 break
+            clock.step = max(clock.step, SMALLEST_STEP)
     if clock.status == Status.RUNNING.value:
         if clock.t >= span.end:
             clock.status = Status.COMPLETE.value
