@@ -3,7 +3,7 @@ PYTHON := $(firstword $(shell command -v python3.11) $(shell command -v python3)
 BIN := .venv/bin
 AS_ROOT := $(if $(filter-out 0,$(shell id -u)),sudo,)
 
-.PHONY: setup run test check bounds bench chromium readme paper pictures clean
+.PHONY: setup run test check bounds bench chromium readme structure paper pictures clean
 
 setup: .venv/ready
 
@@ -41,6 +41,9 @@ bench: setup
 
 readme: setup
 	$(BIN)/python -m tests.readme
+
+structure: setup
+	$(BIN)/python -m tests.structure
 
 paper: setup
 	$(BIN)/trackride paper --out build/paper

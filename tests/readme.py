@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 from model.config.parameters import parameter_table
 from model.paper.errata import errata_list
+from tests.structure import ROOT
 
-ROOT = Path(__file__).parents[1]
 RESULTS = ROOT / "tests" / "benchmarks" / "results"
 
 

@@ -1,146 +1,120 @@
-"""The house's rules on who may import whom, read from the source files."""
+"""The house's rules on who may import whom. Imports are followed through, those for typing included."""
 
 from __future__ import annotations
 
-import ast
 import subprocess
 import sys
-from pathlib import Path
+from html import unescape
 
 import pytest
 
-ROOT = Path(__file__).parents[1]
-PACKAGES = ("model", "app", "configs")
-SOURCES = sorted(path for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
+from tests.structure import FLOOR, IMPORTS, MODULES, PICTURE, ROOT, arrows, chain, circles, content, inside, room_of
 
-# A module imports from rows above its own only. Modules not named stand below all of these.
-ROWS = (
-    ("model.compiled", "model.dynamics.ground", "model.files", "model.config.parameters", "model.config.strict_yaml"),
-    ("model.config.profile_points", "model.road.nearest_point"),
-    ("model.config.validation", "model.road.table"),
-    ("model.config.config", "model.road.profile"),
-    ("model.dynamics.vehicle", "model.road.shapes", "model.road.random_road"),
-    ("model.dynamics.suspension", "model.dynamics.lanes"),
-    ("model.road.road", "model.dynamics.equilibrium", "model.simulation.trajectory"),
-    ("model.dynamics.equations", "model.dynamics.contact"),
-    ("model.dynamics.kernel",),
-    ("model.simulation.steppers",),
-    ("model.simulation.integrate",),
-    ("model.simulation.simulate",),
-    ("model.simulation.batch",),
-)
-LEVEL = {module: level for level, row in enumerate(ROWS) for module in row}
-
-# Libraries with a place of their own: the only modules that may import them.
+# Libraries with a place of their own: exactly these modules, or modules in these packages, import them.
 PLACES = {
     "numba": {"model.compiled"},
     "model.compiled": {
-        *(
-            "model.road.nearest_point",
-            "model.road.table",
-            "model.dynamics.contact",
-            "model.dynamics.kernel",
-            "model.simulation.steppers",
-        ),
+        *("model.road.nearest_point", "model.road.table"),
+        *("model.dynamics.contact", "model.dynamics.kernel", "model.simulation.steppers"),
         *("app.plots.thinning", "app.view3d.track_belt"),
     },
-    "threading": {"app.session.session", "app.runs.runner", "app.session.background"},
-    "queue": set(),
-    "_thread": set(),
-    "dask": {"model.simulation.batch"},
-    "distributed": {"model.simulation.batch"},
-    "multiprocessing": {"model.simulation.batch"},
+    "threading": {"app.session.session", "app.session.background", "app.runs.runner"},
+    "concurrent": {"model.simulation.batch"},
+    "matplotlib": {"app.reports"},
     "trimesh": {"app.view3d.meshes.solids"},
+    **{nowhere: set() for nowhere in ("_thread", "queue", "multiprocessing", "dask", "distributed")},
 }
-NOT_IN_MODEL = {"app", "assets", "viser", "threading", "asyncio", "trimesh", "matplotlib", "tkinter", "rich", "typer"}
-PURE = (
-    "app.view3d.snapshot",
-    "app.plots.curves",
-    "app.plots.thinning",
-    "app.view3d.track_belt",
-    "app.runs.playback",
-    "app.format.colours",
-    "app.plots.ride",
-    "app.plots.spectrum",
-    "app.tabs.comfort",
-    "app.tabs.modes",
-    "app.view3d.mode_animation",
-    "app.tabs.load_map",
-    "app.format.load_colours",
-    "app.tabs.trust",
-    "app.format.markup",
-    "app.panels.status_line",
-    "app.runs.drive",
-)  # no viser, so that they are tested without a browser
+NOT_IN_MODEL = ("app", "viser", "threading", "asyncio", "trimesh", "matplotlib", "tkinter", "rich", "typer")
+# What loads no viser, so that it serves without a browser and is tested without one
+NO_VISER = ("model", "app.format", "app.plots", "app.runs", "app.tabs", "app.reports", "app.view3d.meshes")
+NO_VISER += ("app.view3d.snapshot", "app.view3d.track_belt", "app.view3d.mode_animation", "app.panels.status_line")
 
 
-def name_of(path: Path) -> str:
-    return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+def modules_in(package: str) -> list[str]:
+    return [module for module in MODULES if inside(module, package)]
 
 
-def imports(path: Path) -> set[str]:
-    """Full names of all modules a file imports, inside functions as well."""
-    found = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, f"{path}: relative import"
-            module = node.module or ""
-            found |= {
-                f"{module}.{alias.name}" if f"{module}.{alias.name}" in MODULES else module for alias in node.names
-            }
-    return found
+@pytest.mark.parametrize("room", sorted(arrows()))
+def test_rooms_import_from_floors_below_their_own(room):
+    package = room.split(".")[0]
+    for imported in arrows()[room]:
+        assert FLOOR[imported] < FLOOR[room], f"{room} must not import {imported}"
+        assert inside(imported, package) or package == "app", f"{room} must not import {imported}"
 
 
-MODULES = {name_of(path) for path in SOURCES}
-IMPORTS = {name_of(path): imports(path) for path in SOURCES}
+def test_every_module_is_in_a_room_or_has_a_reason_not_to_be():
+    outside = {module for module in MODULES if room_of(module) is None}
+    assert outside == {"model", "model.compiled", "model.files", "app", "app.__main__", "configs"}
 
 
-def inside(module: str, library: str) -> bool:
-    return module == library or module.startswith(f"{library}.")
+@pytest.mark.parametrize("module", ["model.compiled", "model.files", "configs"])
+def test_what_all_may_import_imports_nothing_of_ours(module):
+    assert not IMPORTS[module] & MODULES.keys()
 
 
-def test_the_rules_are_about_files_that_exist():
-    assert set(LEVEL) <= MODULES
-    assert {"model.simulation.simulate", "model.dynamics.kernel", "model.dynamics.vehicle"} <= set(IMPORTS)
-    assert "model.dynamics.lanes" in IMPORTS["model.dynamics.kernel"]
+def test_rooms_of_the_model_do_not_import_what_it_offers_to_others():
+    assert not [module for module in modules_in("model") if "model" in IMPORTS[module]]
 
 
-@pytest.mark.parametrize("module", [module for module in sorted(MODULES) if inside(module, "model")])
-def test_imports_inside_the_model_run_one_way(module):
-    level = LEVEL.get(module, len(ROWS))
-    for imported in IMPORTS[module] & MODULES:
-        if imported in LEVEL or level < len(ROWS):
-            assert LEVEL.get(imported, len(ROWS)) < level, f"{module} must not import {imported}"
+def test_no_modules_import_each_other():
+    assert circles() == []
 
 
-@pytest.mark.parametrize("module", [module for module in sorted(MODULES) if inside(module, "model")])
-def test_the_model_knows_no_viewer_no_thread_no_app(module):
-    for imported in IMPORTS[module]:
-        assert imported.split(".")[0] not in NOT_IN_MODEL, f"{module} must not import {imported}"
+@pytest.mark.parametrize("package", ["model", "app"])
+def test_few_files_lie_directly_in_a_package(package):
+    assert len([path for path in (ROOT / package).iterdir() if path.is_file()]) <= 6
+
+
+def test_assets_hold_no_python():
+    assert not list((ROOT / "assets").rglob("*.py"))
+
+
+@pytest.mark.parametrize("library", NOT_IN_MODEL)
+def test_the_model_knows_no_viewer_no_thread_no_app(library):
+    for module in modules_in("model"):
+        assert not (way := chain(module, library)), " → ".join(way)
 
 
 @pytest.mark.parametrize("library", PLACES)
 def test_libraries_keep_to_their_places(library):
     users = {module for module, imported in IMPORTS.items() if any(inside(name, library) for name in imported)}
-    assert users <= PLACES[library]
+    places = PLACES[library]
+    assert {place for place in places if any(inside(user, place) for user in users)} == places
+    assert not {user for user in users if not any(inside(user, place) for place in places)}
 
 
-def test_pure_parts_of_the_app_and_the_meshes_know_no_viser():
-    for module in [module for module in MODULES if module in PURE or inside(module, "app.view3d.meshes")]:
-        assert not any(inside(name, "viser") for name in IMPORTS[module]), module
+@pytest.mark.parametrize("package", NO_VISER)
+def test_no_way_leads_to_viser(package):
+    assert modules_in(package)
+    for module in modules_in(package):
+        assert not (way := chain(module, "viser")), " → ".join(way)
 
 
-def test_meshes_and_presets_do_not_know_the_app():
-    for module in MODULES:
-        if not inside(module, "app"):
-            assert not any(inside(name, "app") for name in IMPORTS[module]), module
+def test_viser_is_not_loaded():
+    assert "viser" not in loaded_by([module for package in NO_VISER for module in modules_in(package)])
 
 
 def test_the_model_loads_without_the_app_and_its_libraries():
-    program = "import sys, model; print(*{name.split('.')[0] for name in sys.modules})"
-    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
-    loaded = set(done.stdout.split())
+    loaded = loaded_by(modules_in("model"))
     assert "model" in loaded
-    assert not loaded & {"viser", "app", "assets", "trimesh", "matplotlib", "typer"}
+    assert not loaded & {"viser", "app", "trimesh", "matplotlib", "typer", "rich"}
+
+
+def loaded_by(modules: list[str]) -> set[str]:
+    """Top-level names of all that a fresh Python loads with these modules."""
+    program = f"import sys, {', '.join(modules)}; print(*{{name.split('.')[0] for name in sys.modules}})"
+    done = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
+    return set(done.stdout.split())
+
+
+def test_the_cache_of_compiled_code_heeds_all_files_with_such_code():
+    """Compiled functions, and those that they compile in from modules that they import."""
+    from model.compiled import _KERNELS
+
+    users = [module for module in modules_in("model") if "model.compiled" in IMPORTS[module]]
+    with_code = {*users, *(name for user in users for name in IMPORTS[user] & MODULES.keys())}
+    assert with_code <= {f"model.{name.removesuffix('.py').replace('/', '.')}" for name in _KERNELS}
+
+
+def test_the_picture_of_the_rooms_is_current():
+    assert content() in unescape(PICTURE.read_text(encoding="utf-8")), "run: make structure"

@@ -29,7 +29,7 @@ class Parameter:
 
     key: str  # dotted path, as in the file
     label: str
-    symbol: str  # the paper's or model.md's; empty where there is none
+    symbol: str  # the paper's or model/MODEL.md's; empty where there is none
     unit: str
     default: Value  # None: computed from the others
     low: float = 0.0

@@ -243,7 +243,7 @@ def _not_allowed(parameter: Parameter, value: Any) -> Fault:
 def wheel_positions(
     positions: tuple[float, ...] | None, count: int, spacing: float, offset: float
 ) -> tuple[float, ...]:
-    """x of each road wheel's centre in the design pose, front first, m (model.md, "Design pose")."""
+    """x of each road wheel's centre in the design pose, front first, m (model/MODEL.md, "Design pose")."""
     if positions is not None:
         return positions
     front = (count - 1) * spacing / 2 + offset

@@ -1,4 +1,4 @@
-"""Rest pose on flat ground: the minimum of the potential energy over the free coordinates (model.md, "Start").
+"""Rest pose on flat ground: the minimum of the potential energy over the free coordinates (model/MODEL.md, "Start").
 
 At rest the ground only pushes upwards, so height y_0 of the chassis and the rotations of chassis and arms are enough.
 Every body's height is y_0 + Σ_R sin θ_R E_x + cos θ_R E_y over the rotating bodies R between it and the chassis.

@@ -1,4 +1,6 @@
-"""Config -> System: the multibody system as frozen arrays (model.md, "Bodies", "Design pose", "Suspension torques").
+"""Config -> System: the multibody system as frozen arrays.
+
+As model/MODEL.md says in "Frames and bodies", "Design pose" and "Suspension torques".
 
 Frame: x forward, y up, angles counter-clockwise; SI units and radians throughout.
 """

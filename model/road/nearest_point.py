@@ -4,7 +4,7 @@ D(s) = (s − X)² + (h(s) − Y)² is the squared distance from the centre P = 
 g(s) = (s − X) + (h − Y) h′. Where the road is too gently curved for a wheel in contact to have two minima of D, a
 Halley iteration on g = 0 from a stored guess finds the one; so it does where a single stretch can hold the nearest
 point and has one minimum. Elsewhere all cells that can hold the lowest minimum are searched. Thus a wheel bridges
-valleys tighter than itself. How the table is made: road_table.py.
+valleys tighter than itself. How the table is made: table.py.
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
-"""Road profiles y = h(x), and the point of a profile nearest to a wheel's centre (model.md, "Terrain").
+"""Road profiles y = h(x), and the point of a profile nearest to a wheel's centre.
+
+As model/MODEL.md says in "Terrain and contact geometry".
 
 A road is a row of smooth pieces (model/road/profile.py), each a NumPy function with its first two derivatives. To add a
 road type, write one function in shapes.py that returns its pieces and name it in PLACED there: contact, drawing and the

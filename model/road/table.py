@@ -1,4 +1,4 @@
-"""The table of a road in which road_search.py finds the point nearest to a wheel: cells of quintics, bins of positions.
+"""The table of a road in which nearest_point.py finds a wheel's contact point: cells of quintics, bins of positions.
 
 What is sought, and how, is said there. Which cells can hold the nearest point is found beforehand for all centres in a
 box: a bin of X, and of Y what a wheel in contact has that has not sunk in deeper than SEARCHED radii. For two points a

@@ -18,7 +18,7 @@ FLAT = PAPER.replace({"road.type": "flat"})
 WHEELS, ARMS = "vehicle.road_wheels", "vehicle.road_arms"
 ROAD_SPRING, IMAGINARY = "vehicle.road_suspension", "vehicle.imaginary_suspension"
 
-# Every option of model.md at least once.
+# Every option of model/MODEL.md at least once.
 OPTIONS: dict[str, dict[str, Any]] = {
     "paper": {},
     "without imaginary wheels": {"vehicle.imaginary_wheels.enabled": False},

@@ -116,7 +116,7 @@ def test_shown_units():
 
 @pytest.mark.parametrize(
     ("key", "low", "high"),
-    [  # what model.md says was tried
+    [  # what model/MODEL.md says was tried
         ("drive.speed_kmh", 2, 70),
         ("road.amplitude", 0, 0.3),
         ("road.wavelength", 0.5, 20),

@@ -1,4 +1,4 @@
-"""The multibody system of a configuration: counts, order, design pose, rates and preloads (model.md)."""
+"""The multibody system of a configuration: counts, order, design pose, rates and preloads (model/MODEL.md)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The paper's study: its figures of merit against known signals and against model.md's, and how far claims reach."""
+"""The paper's study: its figures of merit against known signals and model/MODEL.md's, and how far claims reach."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def stiffness() -> dict[float, Figures]:
 
 
 def test_the_claims_have_the_numbers_of_the_independent_engine(stiffness):
-    """Shares and rms accelerations of model.md; whole waves make the acceleration a little higher than its 0.649."""
+    """Shares and rms accelerations of model/MODEL.md; whole waves make the acceleration a little higher than 0.649."""
     shares = [figures.share for figures in stiffness.values()]
     accelerations = [figures.acceleration_rms for figures in stiffness.values()]
     np.testing.assert_allclose(shares, [0.07, 0.11, 0.15, 0.23, 0.32, 0.47], atol=0.01)

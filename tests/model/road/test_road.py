@@ -1,4 +1,4 @@
-"""Roads: heights as model.md defines them, and the nearest point against brute force on random profiles."""
+"""Roads: heights as model/MODEL.md defines them, and the nearest point against brute force on random profiles."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def polyline(x: np.ndarray, y: np.ndarray) -> Profile:
 
 
 def sine_height(x: np.ndarray, x_s: float, ramp: float) -> np.ndarray:
-    """The paper's road, A = 0.1 m, λ = 7 m, straight from model.md."""
+    """The paper's road, A = 0.1 m, λ = 7 m, straight from model/MODEL.md."""
     u = np.clip((x - x_s) / ramp, 0.0, 1.0)
     return 0.1 * u**2 * (3 - 2 * u) * np.sin(2 * np.pi * (x - x_s) / 7.0)
 

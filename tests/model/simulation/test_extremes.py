@@ -1,4 +1,4 @@
-"""The ends of what model.md says a correct integrator masters: every run must be whole, finite and held together."""
+"""The ends of what model/MODEL.md says an integrator completes: every run must be whole, finite and held together."""
 
 from __future__ import annotations
 

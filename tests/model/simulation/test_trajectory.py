@@ -1,4 +1,4 @@
-"""Runs on disk: what formats.md promises of .npz and .csv, and files that are no runs."""
+"""Runs on disk: what .npz and .csv must hold, and files that are no runs."""
 
 from __future__ import annotations
 
