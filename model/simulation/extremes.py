@@ -20,7 +20,6 @@ from model.dynamics.kernel import rates
 from model.dynamics.lanes import HEAD, LANES, SCRATCH_SIZE, STATE_SIZE, C, W, Y, blocks, state_size
 from model.dynamics.vehicle import System
 from model.simulation.dense import CUBIC, SPARE, Memory, state_within
-from model.simulation.peaks import Peaks
 
 PITCH, RISING = 2, 4  # entries of the flat state: θ and ẏ of the chassis
 NEAR_TOP = 0.7  # of the largest so far: a load that rises above this may come to its peak in the next step
@@ -74,27 +73,6 @@ def forget(extremes: Extremes) -> None:
         values[:] = -np.inf
     extremes.low[:] = np.inf
     extremes.air[:] = 0.0
-
-
-def tracked(system: System, extremes: Extremes) -> Peaks:
-    """The same in the model's order of wheels and arms."""
-    n, m = system.n, system.m
-    arm = np.arange(n)
-    wheel = arm + arm // LANES * LANES
-    wheel = np.concatenate([wheel, wheel[:m] + LANES])
-    return Peaks(
-        load=extremes.load[wheel],
-        load_time=extremes.load_at[wheel],
-        depth=extremes.depth[wheel],
-        depth_time=extremes.depth_at[wheel],
-        air_time=extremes.air[wheel],
-        arm_high=extremes.high[arm],
-        arm_high_time=extremes.high_at[arm],
-        arm_low=extremes.low[arm],
-        arm_low_time=extremes.low_at[arm],
-        acceleration=np.array(extremes.hull[0]),
-        acceleration_time=np.array(extremes.hull[1]),
-    )
 
 
 @inlined

@@ -11,11 +11,11 @@ import numpy as np
 
 from model.config.config import Simulation
 from model.dynamics.kernel import rates
-from model.dynamics.lanes import WORK, coordinates, in_lanes, make_work
+from model.dynamics.lanes import LANES, WORK, coordinates, in_lanes, make_work
 from model.dynamics.vehicle import System
 from model.road.nearest_point import RoadTable
 from model.simulation.dense import STAGES, Memory
-from model.simulation.extremes import RISING, begin, forget, make_extremes, note, tracked
+from model.simulation.extremes import RISING, Extremes, begin, forget, make_extremes, note
 from model.simulation.peaks import Peaks
 from model.simulation.steppers import (
     DORMAND_PRINCE,
@@ -154,7 +154,7 @@ class Integration:
 
     def peaks(self) -> Peaks:
         """What was largest since the start, or since `take_samples`."""
-        return tracked(self.system, self._extremes)
+        return _in_order(self.system, self._extremes)
 
     def take_samples(self) -> tuple[np.ndarray, Samples, Peaks]:
         """Times (K,), s, and copies of the samples recorded since the last call, which makes room for more; and what
@@ -266,3 +266,24 @@ class Integration:
             clock.status = Status.COMPLETE
         elif clock.steps > self.duration * STEPS_PER_SECOND:
             clock.status = Status.TOO_MANY_STEPS
+
+
+def _in_order(system: System, extremes: Extremes) -> Peaks:
+    """What was followed in lanes, in the model's order of wheels and arms."""
+    n, m = system.n, system.m
+    arm = np.arange(n)
+    wheel = arm + arm // LANES * LANES
+    wheel = np.concatenate([wheel, wheel[:m] + LANES])
+    return Peaks(
+        load=extremes.load[wheel],
+        load_time=extremes.load_at[wheel],
+        depth=extremes.depth[wheel],
+        depth_time=extremes.depth_at[wheel],
+        air_time=extremes.air[wheel],
+        arm_high=extremes.high[arm],
+        arm_high_time=extremes.high_at[arm],
+        arm_low=extremes.low[arm],
+        arm_low_time=extremes.low_at[arm],
+        acceleration=np.array(extremes.hull[0]),
+        acceleration_time=np.array(extremes.hull[1]),
+    )

@@ -21,7 +21,7 @@ from model.simulation.extremes import begin, follow
 
 STEPS_PER_SECOND = 50_000  # of simulated time, at most; five hundred times what the paper's vehicle needs
 SMALLEST_STEP = 1e-10  # s
-MOST_FORCED = 100  # steps of this length in a row
+MOST_FORCED = 100  # steps of this length until one is longer again
 OVER = 2e-7  # s that take an arm over the beginning of a stop
 FASTEST = 1e3  # m/s: a body faster than this shows that the run has diverged
 STEPS_PER_CHUNK = 5_000  # so that a stop is heeded however stiff the run
@@ -84,7 +84,7 @@ CLOCK = np.dtype(
         ("recorded", "i8"),  # samples
         ("taken", "i8"),  # of these, taken away to make room
         ("status", "i8"),  # a Status
-        ("forced", "i8"),  # steps in a row that were accepted though their error was too large
+        ("forced", "i8"),  # steps accepted though their error was too large, since the last of a usual length
         ("fresh", "i8"),  # 1 when the derivative at y is known
     ]
 )
@@ -328,13 +328,14 @@ def _record_step(dense, last, lanes, road, work, memory, samples, clock, rate, t
 
 
 @inlined
-def _move_on(memory, last, clock, h, t_new):
+def _move_on(memory, last, clock, h, t_new, end):
     """Take over the end of a step."""
     for i in range(len(memory.y)):
         memory.y[i], memory.k[0, i] = memory.y_new[i], memory.k[last, i]
     clock.t = t_new
     clock.steps += 1
-    clock.smallest = min(clock.smallest, h)
+    if t_new < end:  # the last step is as short as is left
+        clock.smallest = min(clock.smallest, h)
 
 
 @inlined
@@ -401,7 +402,7 @@ def adaptive(tableau, lanes, road, work, memory, over_scale, samples, extremes, 
     planned = 0.0  # step before it was cut short at a stop
     _begin(lanes, road, work, memory, extremes, clock)
     while clock.t < span.stop and clock.steps + clock.rejected < most_tries:
-        h = min(clock.step, span.longest)
+        h = min(min(clock.step, span.longest), span.end - clock.t)
         for stage in range(1, tableau.stages):
             _stage_state(tableau.stage[stage], stage, h, memory)
             rates(lanes, road, clock.t + tableau.time[stage] * h, memory.y_new, memory.k[stage], work)
@@ -410,7 +411,7 @@ def adaptive(tableau, lanes, road, work, memory, over_scale, samples, extremes, 
 
         # At a jump of the forces no step is short enough; one of SMALLEST_STEP is too short to matter
         if error <= 1.0 or (h <= SMALLEST_STEP and clock.forced < MOST_FORCED and np.isfinite(error)):
-            clock.forced = 0 if error <= 1.0 else clock.forced + 1
+            clock.forced = 0 if h > 1e3 * SMALLEST_STEP else clock.forced + (error > 1.0)
             clock.status = trouble(lanes, memory.y_new)
             if clock.status != Status.RUNNING.value:
                 break
@@ -428,7 +429,7 @@ def adaptive(tableau, lanes, road, work, memory, over_scale, samples, extremes, 
             t_new = clock.t + h
             follow(tableau.dense, last, lanes, road, work, memory, extremes, clock.t, h)
             _record_step(tableau.dense, last, lanes, road, work, memory, samples, clock, span.rate, t_new)
-            _move_on(memory, last, clock, h, t_new)
+            _move_on(memory, last, clock, h, t_new, span.end)
             # Proportional-integral step control
             factor = 0.9 * max(error, 1e-10) ** -usual * clock.last_error**0.04
             clock.step = max(h * min(max(factor, 0.2), most_growth), planned)
@@ -481,6 +482,6 @@ def runge_kutta_4(lanes, road, work, memory, samples, extremes, clock, span):
             break
         follow(CUBIC, last, lanes, road, work, memory, extremes, t, h)
         _record_step(CUBIC, last, lanes, road, work, memory, samples, clock, span.rate, t_new)
-        _move_on(memory, last, clock, h, t_new)
+        _move_on(memory, last, clock, h, t_new, span.end)
     if clock.status == Status.RUNNING.value and clock.t >= span.end:
         clock.status = Status.COMPLETE.value
