@@ -11,7 +11,8 @@ from model.config.parameters import STEEPEST, number_text
 
 POINT_LIMIT = 200_001  # 10 km, every 5 cm
 FILE_LIMIT = 20_000_000  # bytes of a CSV file, and characters of a text
-FURTHEST = 20_000.0  # m, of a point from the origin
+FURTHEST = 1e6  # m, of a point from the origin: stations are counted from afar
+STATIONED = 1000.0  # m: a profile whose first point lies beyond begins at a station, and is put ahead of the vehicle
 HIGHEST = 10_000.0  # m, of a point above or below it: a survey's heights
 NEAREST = 0.001  # m between two points
 

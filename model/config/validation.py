@@ -23,7 +23,7 @@ from model.config.parameters import (
     Value,
     number_text,
 )
-from model.config.profile_points import PointsError, points
+from model.config.profile_points import STATIONED, PointsError, points
 
 SAMPLE_LIMIT = 100_000  # stored samples of one run
 STEP_LIMIT = 5_000_000  # fixed steps of one run
@@ -377,6 +377,8 @@ def _profile_ahead(text: str, start: float | None, wheel_radius: float, *layout:
     if start is not None:
         return None
     x, y = points(text)
+    if x[0] > STATIONED:
+        return None
     front = wheel_positions(*layout)[0]
     under = np.append(y[x <= front + wheel_radius], [y[0], np.interp(front + wheel_radius, x, y)])
     if np.abs(under).max() <= LEVEL:

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 from io import BytesIO, StringIO
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 from zipfile import BadZipFile
 
 import numpy as np
@@ -17,7 +17,11 @@ from model.config.config import Config, dump_config, parse_config
 from model.dynamics.vehicle import System, build_system
 from model.files import write_whole
 
+if TYPE_CHECKING:
+    from model.road.road import Road
+
 LARGEST = 1e50  # of a file's numbers: far above any run's, and their fourth powers can still be added up
+FASTEST = 100.0  # m/s: no run comes further in its time; a file's numbers may be anything
 LONGEST_TEXT = 300  # characters of a file's status and advice
 
 
@@ -56,6 +60,14 @@ class Trajectory:
     def system(self) -> System:
         """The vehicle of this run."""
         return build_system(self.config)
+
+    @property
+    def road(self) -> Road:
+        """The road under this run, as far as its wheels came: further than asked for where it rolled away downhill."""
+        from model.road.road import SPARE, build_road  # here: Numba takes a third of a second
+
+        furthest = FASTEST * self.config.simulation.duration
+        return build_road(self.config, min(float(self.q[..., 0].max(initial=0.0)), furthest) + SPARE)
 
     @property
     def complete(self) -> bool:
