@@ -1,4 +1,4 @@
-"""Measured profiles: what a CSV file may hold, and the smooth line through its points."""
+"""Measured profiles: the files that a configuration names, and the line through their points."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from model.config.config import ConfigError, ProfileRoad, dump_config, load_config, parse_config, read_profile
-from model.config.profile_points import POINT_LIMIT, PointsError, points, points_text, read_csv
+from model.config.profile_points import POINT_LIMIT, points_text
 from model.road.road import Road, build_road, profile_end, profile_start
 from model.road.shapes import DENSE, MISSED, ROUNDED, measured
 from model.road.thinning import BRIDGING, CHANGED, thinned
@@ -27,64 +27,6 @@ def road_through(text: str, start: float | None = None, radius: float = 0.32) ->
 
 
 # Files
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "x,y\n0,0\n1.5,0.25\n3,-1e-2\n",
-        "x [m]; y [m]\n0;0\n1.5;0.25\n3;-0.01",
-        "0;0\r\n1,5;0,25\r\n3;-0,01\r\n",
-        "x,y\r0,0\r1.5,0.25\r3,-0.01\r",
-        "\ufeff0\t0\n\n1.5\t.25\n  \n3\t-0.01\n",
-        "0 0\n 1.5   0.25\n3 -0.01",
-        "0, 0\n1.5, 0.25\n3, -0.01",
-    ],
-)
-def test_csv_files(text):
-    x, y = points(read_csv(text.encode()))
-    assert x.tolist() == [0.0, 1.5, 3.0]
-    assert y.tolist() == [0.0, 0.25, -0.01]
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ("x,y\n0,0\n1,abc\n", "line 3: 'abc' is no number; give x and y in m"),
-        ("0,0\n\n1,0,0\n", "line 3: 3 numbers; give two"),
-        ("0,0\n1\n", "line 2: 1 numbers; give two"),
-        ("0,0\n1,0\n1,0\n", "line 3: x must grow from point to point, by 1 mm at least"),
-        ("0,0\n1,0\n0.5,0\n", "line 3: x must grow"),
-        ("0,0\n1,nan\n", "line 2: y must be from -10000 to 10000 m"),
-        ("0,0\n1e9,0\n", "line 2: x must be from -1e6 to 1e6 m"),
-        ("0,0\n1,20\n", "line 2: steeper than 85°"),
-        ("x,y\n0,0\n", "1 points; give 2 to 200001"),
-        ("", "0 points"),
-    ],
-)
-def test_faults_of_files_name_the_line(text, words):
-    with pytest.raises(PointsError, match="^" + words.replace("(", "[(]")):
-        read_csv(text.encode())
-
-
-def test_files_that_are_too_large_or_no_text():
-    with pytest.raises(PointsError, match="larger than 20000000 bytes"):
-        read_csv(b"0" * 20_000_001)
-    with pytest.raises(PointsError, match="not UTF-8"):
-        read_csv(b"\xff\xfe0,0")
-    with pytest.raises(PointsError, match=f"give 2 to {POINT_LIMIT}"):
-        read_csv(b"\n".join(b"%d 0" % k for k in range(POINT_LIMIT + 1)))
-
-
-@settings(max_examples=200, deadline=None)
-@given(st.text(alphabet="0123456789,;.\t\n -e\x00xn\u2028", max_size=60))
-def test_any_text_gives_points_or_a_fault(text):
-    try:
-        x, y = points(read_csv(text.encode()))
-    except PointsError:
-        return
-    assert len(x) == len(y) >= 2
-    assert points_text(x, y) == points_text(*points(points_text(x, y)))
 
 
 def test_a_configuration_names_a_file_beside_it(tmp_path):
@@ -331,6 +273,6 @@ def test_ten_kilometres_are_read_and_ready_quickly(tmp_path):
     (tmp_path / "road.csv").write_text("x,y\n" + "\n".join(f"{a:.2f},{b:.5f}" for a, b in zip(x, y, strict=True)))
     build_road(PAPER).table  # noqa: B018 (compiled)
     began = process_time()
-    values = read_profile(tmp_path / "road.csv")
-    build_road(PAPER.replace({"road.type": "profile", "road.start": 3.0, **values})).table  # noqa: B018
+    text = read_profile(tmp_path / "road.csv").points
+    build_road(PAPER.replace({"road.type": "profile", "road.start": 3.0, "road.points": text})).table  # noqa: B018
     assert process_time() - began < 2.0
