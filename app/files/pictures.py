@@ -22,8 +22,8 @@ MOVIE_LENGTH = 4.0  # s at most
 RENDER_TIMEOUT = 20.0  # s; a hidden tab never answers
 
 
-class View(Protocol):
-    """Where the user looks from: viser's camera."""
+class Viewpoint(Protocol):
+    """Where the user looks from: viser's CameraHandle, or a stand-in."""
 
     @property
     def wxyz(self) -> np.ndarray: ...
@@ -38,11 +38,11 @@ class View(Protocol):
     def aspect(self) -> float: ...
 
 
-class Camera(Protocol):
-    """The browser's side of a screenshot: viser's ClientHandle."""
+class Browser(Protocol):
+    """What draws a picture: viser's ClientHandle, or a stand-in."""
 
     @property
-    def camera(self) -> View: ...
+    def camera(self) -> Viewpoint: ...
 
     def get_render(
         self, height: int, width: int, *, wxyz: Any, position: Any, fov: float, transport_format: Any, timeout: Any
@@ -53,13 +53,13 @@ class NoPictureError(Exception):
     """The browser sent no picture; the message says why and what to do."""
 
 
-def take_picture(camera: Camera, width: int, height: int, background: str | None) -> bytes:
+def take_picture(browser: Browser, width: int, height: int, background: str | None) -> bytes:
     """PNG of the 3-D view, width × height pixels; without a background (CSS colour) it is transparent where there is
     nothing. Waits for the browser.
 
     Raises NoPictureError when the tab is hidden, closed or cannot render so large a picture.
     """
-    picture = Image.fromarray(_render(camera, width, height, "png"))
+    picture = Image.fromarray(_render(browser, width, height, "png"))
     if picture.mode == "RGBA" and background is not None:
         opaque = Image.new("RGBA", picture.size, background)
         picture = Image.alpha_composite(opaque, picture).convert("RGB")
@@ -68,14 +68,14 @@ def take_picture(camera: Camera, width: int, height: int, background: str | None
     return file.getvalue()
 
 
-def movie_frames(camera: Camera, seek: Callable[[float], None], start: float, end: float) -> Iterator[np.ndarray]:
+def movie_frames(browser: Browser, seek: Callable[[float], None], start: float, end: float) -> Iterator[np.ndarray]:
     """Pixels (H, W, 3) of each frame from `start` to `end`, s of the run; `seek` shows a time. Waits for the browser.
 
     Raises NoPictureError like take_picture.
     """
     for frame in range(round((end - start) * MOVIE_RATE)):
         seek(start + frame / MOVIE_RATE)
-        yield _render(camera, *MOVIE_SIZE, "jpeg")
+        yield _render(browser, *MOVIE_SIZE, "jpeg")
 
 
 def framed(fov: float, page_aspect: float, picture_aspect: float) -> float:
@@ -86,15 +86,15 @@ def framed(fov: float, page_aspect: float, picture_aspect: float) -> float:
     return float(2 * np.arctan(np.tan(fov / 2) * page_aspect / picture_aspect))
 
 
-def _render(camera: Camera, width: int, height: int, kind: str) -> np.ndarray:
-    view = camera.camera
+def _render(browser: Browser, width: int, height: int, kind: str) -> np.ndarray:
+    viewpoint = browser.camera
     try:
-        return camera.get_render(
+        return browser.get_render(
             height,
             width,
-            wxyz=view.wxyz,
-            position=view.position,
-            fov=framed(view.fov, view.aspect, width / height),
+            wxyz=viewpoint.wxyz,
+            position=viewpoint.position,
+            fov=framed(viewpoint.fov, viewpoint.aspect, width / height),
             transport_format=kind,
             timeout=RENDER_TIMEOUT,
         )

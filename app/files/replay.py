@@ -1,4 +1,4 @@
-"""A run as one HTML file that opens from disk and plays: recorded off a throwaway server of its own."""
+"""A run as one HTML file that opens from disk and plays: recorded from a server that is made for it and thrown away."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ from typing import Any
 import rich
 import viser
 
-from app.view3d.camera import View
-from app.view3d.view import Stage
+from app.format.assets import asset
+from app.view3d.camera import Standpoint
+from app.view3d.view import View3D
 from model.road.road import Road
 from model.simulation.trajectory import Trajectory
 
@@ -20,28 +21,10 @@ RATE = 25.0  # frames a second
 LONGEST = 30.0  # s of a run that are recorded: for each about 0.3 megabytes, with a ghost 0.4
 WINDOW = (1600, 900)  # pixels, whose shape the view is fitted to
 
-# Let messages take effect at once, and not with the next frame: whenever it starts anew or is scrubbed back, the page
-# first turns on viser's own lights, and would show them until then. Where a page has no such insides, nothing changes.
-AT_ONCE = """<script>
-  const waiting = setInterval(() => {
-    const viewer = window.__viserMutable;
-    if (!viewer?.drainMessageQueue) return;
-    clearInterval(waiting);
-    const request = viewer.requestRender;
-    let busy = false;
-    viewer.requestRender = () => {
-      request();
-      if (busy) return;
-      busy = true;
-      try { viewer.drainMessageQueue?.(); } finally { busy = false; }
-    };
-  }, 50);
-</script>"""
-
 
 @dataclass
-class _Lens:
-    """A camera that takes note of where it is put."""
+class _FixedCamera:
+    """A camera that remembers where it is put."""
 
     image_width, image_height = WINDOW
     fov: float = 0.0
@@ -51,14 +34,14 @@ class _Lens:
     max_orbit_distance: Any = None
 
     def on_update(self, callback: Any) -> None:
-        """Nobody moves it."""
+        """Nobody moves it, so there is nothing to call."""
 
 
-class _Page:
+class _SharedTab:
     """A tab without a browser: the scene that all visitors of the throwaway server would share."""
 
     def __init__(self, server: viser.ViserServer) -> None:
-        self.scene, self.atomic, self.camera = server.scene, server.atomic, _Lens()
+        self.scene, self.atomic, self.camera = server.scene, server.atomic, _FixedCamera()
 
 
 def replay_html(
@@ -66,21 +49,21 @@ def replay_html(
     baseline: Trajectory | None,
     title: str,
     dark: bool = False,
-    view: View = "three-quarter",
+    standpoint: Standpoint = "three-quarter",
     should_stop: Callable[[], bool] = lambda: False,
     road: Road | None = None,
 ) -> str | None:
     """A standalone page in which the run plays, can be scrubbed and looked at from all sides.
 
     baseline: another run, which goes along as a ghost. title: plain text, shown above the view and as the page's name.
-    A run longer than LONGEST is cut there, and the page says so. Takes a few seconds; not for an event loop. None when
-    `should_stop`, asked before each frame, says so. road: under a stretch of a drive, which has no ghost; a run has
-    that of its configuration.
+    A run longer than LONGEST is cut there, and the page says so. It takes a few seconds: do not call it on an event
+    loop. Returns None when `should_stop`, called before each frame, returns True. road: under a stretch of a drive,
+    which has no ghost; a run has the road of its configuration.
     """
     duration = float(trajectory.t[-1] - trajectory.t[0])
     if duration > LONGEST:
         title += f" (the first {LONGEST:g} s of {duration:g} s)"
-    page = _record(trajectory, baseline, min(duration, LONGEST), dark, view, should_stop, road)
+    page = _record(trajectory, baseline, min(duration, LONGEST), dark, standpoint, should_stop, road)
     return page and _titled(page, title, dark)
 
 
@@ -89,26 +72,26 @@ def _record(
     baseline: Trajectory | None,
     duration: float,
     dark: bool,
-    view: View,
+    standpoint: Standpoint,
     should_stop: Callable[[], bool],
     road: Road | None,
 ) -> str | None:
     with _silence():
         server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
     try:
-        page = _Page(server)
-        stage = Stage(page, dark)
-        stage.show(trajectory) if road is None else stage.show_live(trajectory, road)
-        stage.show_ghost(baseline)
-        stage.set_view(view)
-        start, camera = server.initial_camera, page.camera
+        tab = _SharedTab(server)
+        view = View3D(tab, dark)
+        view.show(trajectory) if road is None else view.show_live(trajectory, road)
+        view.show_ghost(baseline)
+        view.set_view(standpoint)
+        start, camera = server.initial_camera, tab.camera
         start.fov, start.up = camera.fov, camera.up_direction
         start.position, start.look_at = camera.position, camera.look_at
         recording = server.get_scene_serializer()
         for frame in range(int(duration * RATE) + 1):
             if should_stop():
                 return None
-            stage.draw(float(trajectory.t[0]) + frame / RATE)
+            view.draw(float(trajectory.t[0]) + frame / RATE)
             recording.insert_sleep(1 / RATE)
         return recording.as_html(dark_mode=dark)
     finally:
@@ -137,4 +120,4 @@ def _titled(page: str, title: str, dark: bool) -> str:
     )
     head, body = page.split("<title>Viser</title>", 1)
     body, end = body.rsplit("</body>", 1)
-    return f"{head}<title>{text}</title>{body}{caption}{AT_ONCE}</body>{end}"
+    return f"{head}<title>{text}</title>{body}{caption}<script>{asset('replay.js')}</script></body>{end}"

@@ -1,4 +1,4 @@
-"""What users bring along: configurations and runs, from files of any content. Pure."""
+"""Files that users upload: configurations, profiles and runs; their content may be anything. Pure."""
 
 from __future__ import annotations
 

@@ -70,7 +70,7 @@ class Theme:
     ground: Colour
     road: tuple[Colour, Colour]  # every other metre
     ghost: Colour
-    marks: Colour  # lines that are drawn over the scene
+    overlays: Colour  # lines that are drawn over the vehicle
     grid: Colour
     key_light: float  # intensities
     sky_light: float
@@ -83,7 +83,7 @@ LIGHT = Theme(
     ground=(142, 150, 122),
     road=((214, 202, 180), (190, 177, 152)),
     ghost=(152, 126, 234),
-    marks=(30, 34, 40),
+    overlays=(30, 34, 40),
     grid=(140, 150, 164),
     key_light=3.0,
     sky_light=1.6,
@@ -95,7 +95,7 @@ DARK = Theme(
     ground=(46, 50, 53),
     road=((92, 95, 100), (76, 79, 84)),
     ghost=(196, 172, 255),
-    marks=(236, 240, 246),
+    overlays=(236, 240, 246),
     grid=(96, 104, 116),
     key_light=2.4,
     sky_light=1.3,

@@ -102,10 +102,13 @@ class Actions(Protocol):
     def set_view(self, view: str) -> None:
         """Look at the vehicle from another standpoint (app/view3d/camera.py)."""
 
-    def set_switch(self, switch: str, on: bool | float) -> None:
-        """Turn something of the 3-D view on or off, or set its size."""
+    def set_switch(self, switch: str, on: bool) -> None:
+        """Turn something of the 3-D view on or off (app/view3d/overlays.py)."""
 
     def toggle_switch(self, switch: str) -> None: ...
+
+    def set_arrow_scale(self, scale: float) -> None:
+        """Make the force arrows longer or shorter."""
 
     def pick_wheel(self, wheel: int | None) -> None:
         """Show a wheel's card; None, or the wheel that is picked already: no card."""

@@ -19,7 +19,7 @@ DASH = {"baseline": (4, 3), "static": (1, 3)}
 KEY = {"static": "dotted: at rest", "baseline": "dashed: baseline"}
 GRID = "#80808030"  # on light ground and on dark
 TICKS: viser.uplot.Axis_Ticks = {"size": 4, "width": 1}
-NUDGE = 1e-9  # s. A chart misses a new size that comes with new data, and works out its axes when the range changes.
+NUDGE = 1e-9  # s. A chart overlooks a new size that comes with new data; it lays out its axes when the range changes
 PADDING = (12, 18, 0, 0)  # px; less on top would cut the highest tick's label
 TIME_KEY, OTHER_KEY = "trackride-time", "trackride-frequency"  # charts with the same key share cursor and zoom
 

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import html
-from pathlib import Path
 from typing import Any
 
 import viser
 
 from app.files.uploads import configuration
+from app.format.assets import asset
+from app.format.markup import Html, element, joined, style
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from model.config.config import Config, ConfigError, dump_config
-
-STYLE = f"<style>{(Path(__file__).parents[2] / 'assets' / 'modal.css').read_text()}</style>"  # in each window's HTML
 
 
 class YamlWindow:
@@ -21,7 +19,7 @@ class YamlWindow:
 
     def __init__(self, gui: viser.GuiApi, config: Config, actions: Actions) -> None:
         with gui.add_modal("Configuration") as self._modal:
-            gui.add_html(f'<div class="trackride-yaml"></div>{STYLE}')
+            gui.add_html(str(joined((element("div", class_="trackride-yaml"), style(asset("modal.css"))))))
             self._text: Any = gui.add_text("YAML", dump_config(config), multiline=True)
             self._faults = gui.add_html("")
             use = gui.add_button("Use this", hint="Run it; Undo leads back")
@@ -34,7 +32,7 @@ class YamlWindow:
         try:
             config = configuration("", self._text.value.encode())
         except ConfigError as error:
-            self._faults.content = fault_list(error)
+            self._faults.content = str(fault_list(error))
             return None
         self._modal.close()
         return config
@@ -43,12 +41,11 @@ class YamlWindow:
 def show_faults(gui: viser.GuiApi, title: str, error: ConfigError, actions: Actions) -> None:
     """Open a window that says all that is wrong with a configuration."""
     with gui.add_modal(title) as modal:
-        gui.add_html(fault_list(error) + STYLE)
+        gui.add_html(str(joined((fault_list(error), style(asset("modal.css"))))))
         close = gui.add_button("Close")
     close.on_click(by_user(lambda event: modal.close(), actions.fail))
 
 
-def fault_list(error: ConfigError) -> str:
-    """All faults as HTML."""
-    items = "".join(f"<li>{html.escape(str(fault))}</li>" for fault in error.faults)
-    return f'<ul class="trackride-faults">{items}</ul>'
+def fault_list(error: ConfigError) -> Html:
+    """All faults."""
+    return element("ul", *(element("li", str(fault)) for fault in error.faults), class_="trackride-faults")

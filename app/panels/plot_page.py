@@ -5,25 +5,22 @@ Charts draw their data only; moving the cursor costs a line of HTML, and no char
 
 from __future__ import annotations
 
-import html
 import json
-from pathlib import Path
 
+from app.format.assets import asset
+from app.format.markup import element, joined, running, style
 from app.panels.charts import OTHER_KEY, TIME_KEY
 from app.plots.spectrum import Mark
 
-_ASSETS = Path(__file__).parents[2] / "assets"
-
 
 def plot_page() -> str:
-    """HTML that goes into the page once: script and style. The picture that cannot be loaded runs the script."""
-    script, style = (_ASSETS / "plots.js").read_text(), (_ASSETS / "plots.css").read_text()
-    return f'<img hidden src="data:," onerror="{html.escape(script)}"><style>{style}</style>'
+    """HTML that goes into the page once: script and rules."""
+    return str(joined((running(asset("plots.js")), style(asset("plots.css")))))
 
 
 def tab_html(name: str) -> str:
     """HTML of something invisible in a tab, by which the page knows whether that tab is in front."""
-    return f'<trackride-tab name="{name}"></trackride-tab>'
+    return str(element("trackride-tab", name=name))
 
 
 def now_html(time: float) -> str:
@@ -37,4 +34,4 @@ def marks_html(marks: tuple[Mark, ...]) -> str:
 
 
 def _marks_html(key: str, marks: list[tuple[float, str]]) -> str:
-    return f"<trackride-marks for='{key}' at='{html.escape(json.dumps(marks, ensure_ascii=False))}'></trackride-marks>"
+    return str(element("trackride-marks", for_=key, at=json.dumps(marks, ensure_ascii=False)))

@@ -16,6 +16,7 @@ from typing import Any
 import viser
 
 from app.format.colours import Palette, wheel_palette
+from app.format.markup import element
 from app.panels.actions import Actions
 from app.panels.charts import Charts
 from app.panels.page_layout import chart_height, spectrum_height
@@ -236,4 +237,4 @@ def stretch_html(run: Trajectory, *, above: bool) -> str:
     It stands at the right end of the line above or below, which has room there: nothing moves for it.
     """
     words = f"The drive from {run.t[0]:.1f} s to {run.t[-1]:.1f} s"
-    return f'<div class="trackride-stretch{" above" if above else ""}"><span>{words}</span></div>'
+    return str(element("div", element("span", words), class_=f"trackride-stretch{' above' if above else ''}"))

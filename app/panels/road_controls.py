@@ -5,11 +5,11 @@ They are used like app.panels.controls.Control.
 
 from __future__ import annotations
 
-import html
 from typing import Any
 
 import viser
 
+from app.format.markup import element
 from app.format.parameters import choice_words, hint, shown_text
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
@@ -55,7 +55,7 @@ class ProfileControl(RoadControl):
 
     def show(self, value: Any) -> None:
         self.value = value
-        extent = f'<div class="{EXTENT}">{html.escape(shown_text(self.parameter, value))}</div>'
+        extent = str(element("div", shown_text(self.parameter, value), class_=EXTENT))
         if self._extent.content != extent:
             self._extent.content = extent
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Iterable
-from pathlib import Path
 from typing import Any
 
 import viser
 
+from app.format.assets import asset
 from app.format.load_unit import comparison_rows
+from app.format.markup import Content, Html, element, joined, style
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.runs.history import Kept
@@ -18,7 +18,6 @@ from model.simulation.trajectory import Trajectory
 
 PIN, SWAP, CLEAR = "Pin", "Swap", "Clear"
 SHOW, COMPARE, DELETE = "Show", "Compare", "✕"
-STYLE = (Path(__file__).parents[2] / "assets" / "runs.css").read_text()
 HOW_TO = "No baseline. Pin a run (B) and change something: its curves stay, pale, and its figures stand here too."
 
 
@@ -64,8 +63,8 @@ class RunsPanel:
                 self._rows[number] = self._row(run)
             elif self._rows[number].label != run.name:
                 self._rows[number].label = run.name
-        self._heading.content = _heading(name, now, baseline, before_drive)
-        self._style.content = self._marks(kept.values(), now)
+        self._heading.content = str(_heading(name, now, baseline, before_drive))
+        self._style.content = str(self._rules(kept.values(), now))
 
     def show_name(self, name: str) -> None:
         """Put another run's name into its box."""
@@ -86,22 +85,25 @@ class RunsPanel:
         row.on_click(by_user(lambda event: acts[event.target.value](number), actions.fail))
         return row
 
-    def _marks(self, runs: Iterable[Kept], now: Kept | None) -> str:
+    def _rules(self, runs: Iterable[Kept], now: Kept | None) -> Html:
         """Style of the tab: each row in its colour, that of the run that is shown in bold."""
-        rules = [STYLE]
+        rules = [asset("runs.css")]
         rules += [f'label[for="{self._rows[run.number]._impl.uuid}"]::before {{ color: {run.colour} }}' for run in runs]
         if now is not None and now.number in self._rows:
             rules.append(f'label[for="{self._rows[now.number]._impl.uuid}"] {{ font-weight: 650 }}')
-        return f'<style class="trackride-runs">{" ".join(rules)}</style>'
+        return style(" ".join(rules), class_="trackride-runs")
 
 
-def _heading(name: str, now: Kept | None, baseline: Kept | None, before_drive: str) -> str:
-    """HTML: which run is compared with which."""
+def _heading(name: str, now: Kept | None, baseline: Kept | None, before_drive: str) -> Html:
+    """Which run is compared with which."""
     when, shown = ("Last run", before_drive) if before_drive else ("Now", name)
-    compared = HOW_TO if baseline is None else f"<b>Baseline</b> {_named(baseline.name, baseline)}"
-    return f'<div class="trackride-compared"><b>{when}</b> {_named(shown, now)}<br>{compared}</div>'
+    compared: list[Content] = (
+        [HOW_TO] if baseline is None else [element("b", "Baseline"), " ", _named(baseline.name, baseline)]
+    )
+    now_line = element("b", when), " ", _named(shown, now)
+    return element("div", *now_line, element("br"), *compared, class_="trackride-compared")
 
 
-def _named(name: str, run: Kept | None) -> str:
-    dot = "" if run is None else f'<span style="color: {run.colour}">●</span> '
-    return dot + html.escape(name)
+def _named(name: str, run: Kept | None) -> Html:
+    dot = "" if run is None else joined((element("span", "●", style=f"color: {run.colour}"), " "))
+    return joined((dot, name))

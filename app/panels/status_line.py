@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import html
-
+from app.format.markup import Content, element
 from app.runs.drive import DriveState
 from model.simulation.trajectory import Trajectory
 
@@ -36,5 +35,5 @@ def drive_facts(state: DriveState) -> str:
 
 def status_line(name: str, facts: str, trouble: str = "") -> str:
     """HTML of the line that says which run this is."""
-    bad = f' · <span class="bad">{html.escape(trouble)}</span>' if trouble else ""
-    return f'<div class="trackride-status"><b>{html.escape(name)}</b> · {html.escape(facts)}{bad}</div>'
+    bad: list[Content] = [" · ", element("span", trouble, class_="bad")] if trouble else []
+    return str(element("div", element("b", name), " · ", facts, *bad, class_="trackride-status"))

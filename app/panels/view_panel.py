@@ -9,54 +9,19 @@ import viser
 
 from app.format.load_colours import RAMP
 from app.format.load_unit import LoadUnit
+from app.format.markup import element
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
-from app.tabs.load_map import ticks
-from app.view3d.overlays import TRACTION_SCALE
+from app.plots.ticks import ticks
+from app.view3d.camera import Standpoint
+from app.view3d.overlays import SWITCHES
 
-VIEWS = {
+VIEWS: dict[str, Standpoint] = {
     "Side": "side",
     "¾": "three-quarter",
     "Front": "front",
     "Wheel": "wheel",
-}  # shown -> the stage's name
-SWITCHES = {  # attribute of the stage -> label, whether it is on at first, hint
-    "follow": ("Follow vehicle", True, "The camera goes along with the vehicle (F); off: the vehicle drives past"),
-    "show_arrows": (
-        "Load arrows",
-        True,
-        "On each contact point, as high as the normal load f_n is large; none: in the air",
-    ),
-    "show_static_load": ("Static loads", True, "A tick across each arrow: how high it is at rest on flat ground"),
-    "show_traction": (
-        "Traction arrows",
-        False,
-        f"Force f_t along the road, drawn {TRACTION_SCALE:g} times as long as a load of that size; forward: it drives",
-    ),
-    "show_in_air": ("Wheels in the air", True, "A red ring around each wheel that has left the ground"),
-    "show_load_colours": (
-        "Load colours",
-        False,
-        "A ring on each wheel in the colour of its normal load f_n; the scale appears below",
-    ),
-    "show_travel": (
-        "Travel",
-        False,
-        "A bar beside each road wheel: how far it moves up and down in the hull; long mark: at rest",
-    ),
-    "show_labels": (
-        "Wheel names",
-        True,
-        "R1… are road wheels, I1… imaginary wheels, front first. Click a wheel for all its figures",
-    ),
-    "show_loads": ("Loads in figures", False, "The normal load f_n under each wheel's name"),
-    "show_scale_bar": ("Scale bar", True, "A round length, under the rear of the vehicle"),
-    "show_grid": (
-        "Grid",
-        False,
-        "Lines every half metre and metre on a wall behind the vehicle; heights from level ground",
-    ),
-}
+}  # as shown
 LOOK = (
     "Side, front corner, ahead, or close to the front wheels (keys 1, 2, 3, 4). In the view itself drag to turn, with "
     "the right button to shift; the mouse's wheel zooms."
@@ -71,7 +36,7 @@ class ViewPanel:
         with folder:
             views = gui.add_button_group("Look from", tuple(VIEWS), hint=LOOK)
             self._switches: dict[str, Any] = {
-                attribute: gui.add_checkbox(label, on, hint=hint) for attribute, (label, on, hint) in SWITCHES.items()
+                name: gui.add_checkbox(switch.label, switch.on, hint=switch.hint) for name, switch in SWITCHES.items()
             }
             scale = gui.add_slider(
                 "Arrow length",
@@ -84,9 +49,9 @@ class ViewPanel:
             )
             self._load_scale = gui.add_html("", visible=False)
         views.on_click(by_user(lambda event: actions.set_view(VIEWS[event.target.value]), actions.fail))
-        for attribute, box in self._switches.items():
-            box.on_update(by_user(_switching(actions, attribute), actions.fail))
-        scale.on_update(by_user(_switching(actions, "arrow_scale"), actions.fail))
+        for name, box in self._switches.items():
+            box.on_update(by_user(_switching(actions, name), actions.fail))
+        scale.on_update(by_user(lambda event: actions.set_arrow_scale(event.target.value), actions.fail))
         self._night.on_update(by_user(lambda event: actions.set_dark(event.target.value), actions.fail))
 
     def show_dark(self, dark: bool) -> None:
@@ -99,9 +64,9 @@ class ViewPanel:
         if top is not None:
             self._load_scale.content = load_scale(top, unit)
 
-    def toggle(self, attribute: str) -> bool:
-        """Turn a switch over; its new state."""
-        box = self._switches[attribute]
+    def toggle(self, switch: str) -> bool:
+        """Turn a switch on if it is off, and off if it is on; its new state."""
+        box = self._switches[switch]
         box.value = not box.value
         return box.value
 
@@ -109,16 +74,14 @@ class ViewPanel:
 def load_scale(top: float, unit: LoadUnit) -> str:
     """HTML of the ramp of load colours up to `top`, N, with its ticks in that unit."""
     highest = top / unit.newtons
-    marks = "".join(
-        f'<span style="position: absolute; left: {100 * tick / highest:.2f}%; translate: -50%">{tick:g}</span>'
+    ramp = f"height: 0.8em; background: linear-gradient(to right, {', '.join(RAMP)})"
+    numbers = (
+        element("span", f"{tick:g}", style=f"position: absolute; left: {100 * tick / highest:.2f}%; translate: -50%")
         for tick in ticks(0.0, highest, 4)
     )
-    return (
-        f'<div style="padding: 0 0.8em 0.5em; font-size: 0.8em">Normal load, {unit.name}'
-        f'<div style="height: 0.8em; background: linear-gradient(to right, {", ".join(RAMP)})"></div>'
-        f'<div style="position: relative; height: 1.6em">{marks}</div></div>'
-    )
+    parts = element("div", style=ramp), element("div", *numbers, style="position: relative; height: 1.6em")
+    return str(element("div", f"Normal load, {unit.name}", *parts, style="padding: 0 0.8em 0.5em; font-size: 0.8em"))
 
 
-def _switching(actions: Actions, attribute: str) -> Callable[[Any], None]:
-    return lambda event: actions.set_switch(attribute, event.target.value)
+def _switching(actions: Actions, switch: str) -> Callable[[Any], None]:
+    return lambda event: actions.set_switch(switch, event.target.value)

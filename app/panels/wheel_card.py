@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from html import escape
 from typing import Any
 
 import viser
 
+from app.format.assets import asset
 from app.format.load_unit import LoadUnit
+from app.format.markup import element, joined, style
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from model.analysis.ride import WheelState
@@ -67,11 +68,12 @@ def card(state: WheelState, colour: str, unit: LoadUnit) -> str:
         ("Slip of the rim", _figure(state.slip_velocity, 3, "m/s")),
         ("Arm in the hull", _figure(state.arm_angle, 2, "°")),
     )
-    cells = "".join(f"<span>{label}<b>{value}</b></span>" for label, value in figures)
-    return (
-        f'<div class="trackride-wheel"><p><i style="background:{colour}"></i><b>{escape(state.name)}</b> {family}'
-        f"{' <em>in the air</em>' if in_air else ''}</p><div>{cells}</div></div>{STYLE}"
-    )
+    sign = element("i", style=f"background:{colour}")
+    flying = joined((" ", element("em", "in the air"))) if in_air else ""
+    cells = [element("span", label, element("b", value)) for label, value in figures]
+    name = element("p", sign, element("b", state.name), " ", family, flying)
+    shown = element("div", name, element("div", *cells), class_="trackride-wheel")
+    return str(joined((shown, style(asset("wheel.css")))))
 
 
 def _percent(share: float | None) -> float | None:
@@ -83,18 +85,3 @@ def _figure(value: float | None, digits: int, unit: str) -> str:
         return ABSENT
     number = round(value, digits) + 0.0  # no minus before zero
     return f"{number:.{digits}f}{'' if unit == '°' else ' '}{unit}".replace("-", "−")
-
-
-STYLE = """<style>
-  div:has(+ div > .trackride-wheel) { float: right; margin: 0.35em 0.6em 0 0; }
-  div:has(+ div > .trackride-wheel) button { height: 1.8em !important; padding: 0 0.8em; font-size: 0.75em;
-    background: #5c6670 !important; }
-  .trackride-wheel { padding: 0 0.9em; font-size: 0.8em; line-height: 1.4; }
-  .trackride-wheel p { margin: 0 0 0.35em; line-height: 2; white-space: nowrap; }
-  .trackride-wheel i { display: inline-block; width: 0.8em; height: 0.8em; border-radius: 50%; margin-right: 0.5em; }
-  .trackride-wheel em { font-style: normal; font-weight: 550; color: var(--trackride-bad); padding-left: 1ch; }
-  .trackride-wheel > div { display: grid; grid-template-columns: repeat(4, 1fr); gap: 0.25em 0.8em; }
-  .trackride-wheel span { color: var(--mantine-color-dimmed); white-space: nowrap; font-size: 0.9em; }
-  .trackride-wheel span b { display: block; font-weight: 550; font-size: 1.1em; color: var(--mantine-color-text);
-    font-variant-numeric: tabular-nums; }
-</style>"""

@@ -1,4 +1,4 @@
-"""What the plots show, without a plot: a run (and a baseline) -> named curves, thinned to what pixels show."""
+"""The curves that the plots show: a run (and a baseline) -> named curves, thinned to what pixels show. Pure."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from app.format.load_unit import LoadUnit, load_unit
 from app.plots.thinning import thin
 from model.simulation.trajectory import Trajectory
 
-DECIMALS = 2  # of the values that are plotted; the page tells no more (plots.js)
+DECIMALS = 2  # of the values that are plotted; the page shows no more (plots.js)
 TIME = "Time, s"
 
 
@@ -24,7 +24,7 @@ class Curve:
 
     label: str
     colour: str  # CSS
-    kind: Literal["run", "baseline", "static"] = "run"  # of this run, of the one compared with, load at rest
+    kind: Literal["run", "baseline", "static"] = "run"  # of this run, of its baseline, or at rest
     wheel: int | None = None  # in the model's order; None: of the whole vehicle
     faded: bool = False  # another wheel is singled out
 

@@ -1,4 +1,4 @@
-"""Where the hull is shaken, and where it likes to swing: a run (and a baseline) -> spectrum and marks. Pure."""
+"""How strongly the hull is shaken at each frequency: a run (and a baseline) -> spectrum and marks. Pure."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from model.simulation.trajectory import Trajectory
 
 LOWEST_END = 8.0  # Hz: the axis goes this far at least …
 HARMONICS = 3.0  # … and to this many times v/λ
-DECIMALS = 4  # of the values that are plotted; the page tells no more (plots.js)
+DECIMALS = 4  # of the values that are plotted; the page shows no more (plots.js)
 LEAST_SAMPLES = 8  # of a run that has a spectrum
 
 
 class Mark(NamedTuple):
-    """A frequency to know when reading a spectrum."""
+    """A frequency that is marked in a spectrum."""
 
     name: str
     frequency: float  # Hz
-    drives: bool = False  # the vehicle, other than its own frequencies
+    drives: bool = False  # the road drives the vehicle with it; else it is one of the vehicle's own
 
 
 def spectrum_plot(

@@ -1,4 +1,4 @@
-"""Thinning curves to what pixels show without losing a peak: compiled, for each run passes through here on its way."""
+"""Thinning curves to what pixels show without losing a peak. Compiled: each run needs it on its way to the page."""
 
 from __future__ import annotations
 
@@ -7,19 +7,17 @@ import numpy as np
 from model.compiled import compiled
 
 BUCKETS = 400  # stretches of time, each drawn by its smallest and its largest value: about as many as pixels
-SEEN = (
-    2.5e-3  # of the range of all values: what is nearer than that to the line that is drawn is not seen to be missing
-)
-SPARSEST = 1 / 160  # of all time: no longer without a point, since the values at the cursor are those of the nearest
+SEEN = 2.5e-3  # of the range of all values: a point nearer than that to the line drawn is not missed
+SPARSEST = 1 / 160  # of all time: points are no farther apart, since the cursor shows the values of the nearest one
 
 
 def thin(x: np.ndarray, values: np.ndarray, buckets: int = BUCKETS) -> tuple[np.ndarray, np.ndarray]:
     """(K,) and (K, C) with K ≤ 2·buckets that look like the (N,) and (N, C) given.
 
-    Samples that lie on the lines between others go; no column's largest or smallest does. Where that leaves too many,
-    each bucket of samples leaves two: of every column the smallest and the largest value, so that no peak is lost; the
-    smallest first where the bucket rises from its first sample to its last. They stand at its first and last x.
-    What is returned may be what was given; else each column lies in one piece.
+    Samples that lie on the lines between others are left out, but never a column's largest or smallest. If too many
+    remain, each bucket of samples gives two points: of every column the smallest and the largest value, so that no peak
+    is lost; the smallest first where the bucket rises from its first sample to its last. They stand at its first and
+    last x. The arrays returned may be the ones given; otherwise each column lies in one piece of memory.
     """
     count = len(x)
     if count <= 2 * buckets:

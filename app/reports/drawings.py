@@ -19,7 +19,7 @@ DPI = 200  # of a PNG
 WIDTH, HEIGHT = 9.6, 2.6  # inches, of a plot on a page
 LEFT, RIGHT, ABOVE, BELOW = 0.5, 0.12, 0.32, 0.5  # inches around a plot, for its numbers and names
 HEADROOM = 0.11  # of a plot's height, for the name of a mark
-SIZE, SMALL = 9.5, 8.5  # points
+SMALL = 8.5  # points
 NAMES = 0.6  # of a plot's width that its curves' names may take
 
 
@@ -38,9 +38,27 @@ class Look:
         return wheel_palette(system.n, system.m, self.dark)
 
 
-LIGHT = Look(False, "#1c2024", "#66707a", "#e1e5e9", ("#1864ab", "#c2410c"))
-DARK = Look(True, "#e6e9ec", "#98a2ad", "#343a41", ("#74b9ff", "#ff9d5c"))
-LOOKS = (LIGHT, DARK)
+LIGHT_LOOK = Look(False, "#1c2024", "#66707a", "#e1e5e9", ("#1864ab", "#c2410c"))
+DARK_LOOK = Look(True, "#e6e9ec", "#98a2ad", "#343a41", ("#74b9ff", "#ff9d5c"))
+LOOKS = (LIGHT_LOOK, DARK_LOOK)
+
+
+@dataclass(frozen=True)
+class AxesStyle:
+    """Sizes of what stands around a plot, points."""
+
+    title: float = 9.5  # of its text
+    names: float = SMALL
+    numbers: float = SMALL
+    above: float = 7.0  # from the axes up to the title
+    to_name: float = 4.0  # from the numbers to the name of the axis
+    to_number: float = 3.5  # from the ticks to the numbers
+    tick: float = 3.0
+    line: float = 0.6
+    grid: float = 0.7
+
+
+PAGE_STYLE = AxesStyle()
 
 
 @dataclass(frozen=True)
@@ -52,16 +70,24 @@ class Drawing:
     height: float
     draw: Callable[[Figure, Look], None]
 
-    def bytes(self, suffix: str, look: Look = LIGHT, background: str = "none") -> bytes:
+    def bytes(self, suffix: str, look: Look = LIGHT_LOOK, background: str = "none") -> bytes:
         """The content of a .svg or .png file. background: CSS, or none."""
         figure = Figure(figsize=(self.width, self.height), dpi=DPI, facecolor=background)
         self.draw(figure, look)
-        maker = {".png": "Software", ".svg": "Creator"}[suffix]
-        file = io.BytesIO()
-        figure.savefig(
-            file, format=suffix[1:], metadata={"Title": self.title, maker: f"Trackride {version('trackride')}"}
-        )
-        return file.getvalue()
+        return file_of(figure, self.title, suffix)
+
+
+def stamp() -> str:
+    """The name and version of the program."""
+    return f"Trackride {version('trackride')}"
+
+
+def file_of(figure: Figure, title: str, suffix: str) -> bytes:
+    """The content of a .svg or .png file with the figure, its title and the stamp."""
+    maker = {".png": "Software", ".svg": "Creator"}[suffix]
+    file = io.BytesIO()
+    figure.savefig(file, format=suffix[1:], metadata={"Title": title, maker: stamp()})
+    return file.getvalue()
 
 
 def panels(figure: Figure, rows: int, columns: int) -> list[Axes]:
@@ -80,17 +106,26 @@ def panels(figure: Figure, rows: int, columns: int) -> list[Axes]:
     ]  # fmt: skip
 
 
-def plain_axes(axes: Axes, look: Look, title: str = "", x: str = "", y: str = "") -> None:
-    """Give axes the pages' look."""
+def plain_axes(
+    axes: Axes, look: Look, title: str = "", x: str = "", y: str = "", style: AxesStyle = PAGE_STYLE
+) -> None:
+    """Give axes a look. x, y: names of their axes."""
     axes.set_facecolor("none")
-    axes.set_title(title, fontsize=SIZE, color=look.ink, loc="left", pad=7, weight="bold")
-    axes.set_xlabel(x, fontsize=SMALL, color=look.ink)
-    axes.set_ylabel(y, fontsize=SMALL, color=look.ink)
-    axes.grid(color=look.grid, lw=0.7)
+    axes.set_title(title, fontsize=style.title, color=look.ink, loc="left", pad=style.above, weight="bold")
+    axes.set_xlabel(x, fontsize=style.names, color=look.ink, labelpad=style.to_name)
+    axes.set_ylabel(y, fontsize=style.names, color=look.ink, labelpad=style.to_name)
+    axes.grid(color=look.grid, lw=style.grid)
     axes.set_axisbelow(True)
-    axes.tick_params(labelsize=SMALL, length=3, width=0.6, color=look.grey, labelcolor=look.ink)
+    axes.tick_params(
+        labelsize=style.numbers,
+        length=style.tick,
+        width=style.line,
+        pad=style.to_number,
+        color=look.grey,
+        labelcolor=look.ink,
+    )
     for side, spine in axes.spines.items():
-        spine.set(lw=0.6, color=look.grey, visible=side in ("left", "bottom"))
+        spine.set(lw=style.line, color=look.grey, visible=side in ("left", "bottom"))
 
 
 def plots_drawing(
@@ -107,7 +142,7 @@ def plots_drawing(
             for row, (name, x) in enumerate((marks or {}).items()):
                 mark(axes, name, x, look, row)
 
-    return Drawing(title, WIDTH, HEIGHT * len(plots(LIGHT)), draw)
+    return Drawing(title, WIDTH, HEIGHT * len(plots(LIGHT_LOOK)), draw)
 
 
 def mark(axes: Axes, name: str, x: float, look: Look, row: int = 0) -> None:

@@ -11,15 +11,15 @@ from matplotlib.figure import Figure
 from app.format.differences import NONE, figure_text, row_texts
 from app.format.file_names import file_name
 from app.format.load_unit import comparison_rows, heading
-from app.format.markup import formula_html, words_html
+from app.format.markup import Content, Html, element, formula_html, joined, words_html
 from app.format.parameters import value_text
 from app.plots.curves import Plot, load_plots
 from app.plots.ride import ride_plots
 from app.plots.spectrum import LEAST_SAMPLES, Mark, named, spectrum_plot
-from app.reports.drawings import LIGHT, WIDTH, Drawing, Look, plots_drawing
-from app.reports.html_page import Html, document, element, joined, picture, table
-from app.reports.side_view import draw_side_view
-from app.tabs.comfort import FIGURES, PLACES
+from app.reports.drawings import LIGHT_LOOK, WIDTH, Drawing, Look, plots_drawing
+from app.reports.html_page import document, picture, wide_table
+from app.reports.side_view import draw_side_view, highest_load
+from app.tabs.comfort import COMFORT_FIGURES, PLACES
 from app.tabs.modes import NOTE, moving
 from app.tabs.trust import balances, drift, work
 from model.analysis.comfort import ride_comfort
@@ -52,13 +52,13 @@ def report_page(run: Trajectory, source: str) -> str:
         element("p", config.description) if config.description else Html(),
         picture(vehicle_drawing(run), _picture_words(run), ".png"),
         element("dl", *(_tile(row) for row in ride_rows(run))),
-        element("h2", "What to be wary of"),
+        element("h2", "Warnings"),
         _warnings(run),
-        element("h2", "How it rides"),
+        element("h2", "The run over time"),
         *(picture(drawing) for drawing in run_drawings(run, modes)),
-        element("h2", "How it feels"),
+        element("h2", "Ride comfort"),
         _comfort(run),
-        element("h2", "How it likes to swing"),
+        element("h2", "Natural frequencies and modes"),
         _modes(modes),
         element("h2", "Each wheel"),
         _wheels(run),
@@ -87,11 +87,6 @@ def vehicle_drawing(run: Trajectory) -> Drawing:
     return Drawing("The vehicle on its road", WIDTH, 3.9, draw)
 
 
-def highest_load(run: Trajectory) -> float:
-    """When a wheel carries most, s."""
-    return float(run.t[run.normal_load.max(axis=1).argmax()])
-
-
 def run_drawings(run: Trajectory, modes: Modes) -> list[Drawing]:
     """All plots of a run: ride, loads, spectrum."""
     found = named(excitation(run.config), modes)
@@ -103,7 +98,7 @@ def run_drawings(run: Trajectory, modes: Modes) -> list[Drawing]:
     def drawing(number: int, title: str) -> Drawing:
         return plots_drawing(title, lambda look: [plots(look)[number]])
 
-    drawings = [drawing(number, plot.title) for number, plot in enumerate(plots(LIGHT))]
+    drawings = [drawing(number, plot.title) for number, plot in enumerate(plots(LIGHT_LOOK))]
     return [*drawings, spectrum_drawing(run, found)] if len(run.t) >= LEAST_SAMPLES else drawings
 
 
@@ -144,7 +139,7 @@ def _wheels(run: Trajectory) -> Html:
     rows = {(row.wheel, row.figure): row_texts(row)[0] for row in told if row.wheel}
     heads = ["Wheel", *(heading(figure.label, told) for figure in WHEEL_FIGURES)]
     wheels = dict.fromkeys(wheel for wheel, _ in rows)
-    return table(
+    return wide_table(
         heads,
         [[wheel, *(rows.get((wheel, figure.label), NONE) for figure in WHEEL_FIGURES)] for wheel in wheels],
         "numbers",
@@ -155,10 +150,10 @@ def _comfort(run: Trajectory) -> Html:
     felt = [(place, ride_comfort(run, point(run.config))) for place, point in PLACES]
     rows = [
         [f"{figure.name}, {figure.unit}".strip(", "), *(_number(figure.value(of)) for _, of in felt), figure.meaning]
-        for figure in FIGURES
+        for figure in COMFORT_FIGURES
     ]
     words = ["In words", *(of.reaction for _, of in felt), "of ISO 2631-1, the harsher one where two apply"]
-    return table(["", *(place for place, _ in felt), ""], [*rows, words], "facts")
+    return wide_table(["", *(place for place, _ in felt), ""], [*rows, words], "facts")
 
 
 def _number(value: float | None) -> str:
@@ -171,7 +166,7 @@ def _modes(modes: Modes) -> Html:
         for mode in modes.swinging
     ]
     heads = ("Mode", "Frequency", "Damping", "What moves, by its part in the energy")
-    return joined((table(heads, rows, "facts"), element("p", NOTE)))
+    return joined((wide_table(heads, rows, "facts"), element("p", NOTE)))
 
 
 def _parameters(config: Config) -> Iterator[Html]:
@@ -182,7 +177,7 @@ def _parameters(config: Config) -> Iterator[Html]:
     yield element("h3", "Different from the paper's vehicle")
     if changed:
         heads = ("Parameter", "Symbol", "Here", "In the paper's vehicle", "What it is")
-        yield table(
+        yield wide_table(
             heads, [[*_parameter(config, key, shown[key]), _before(paper, key), _words(key)] for key in changed]
         )
     else:
@@ -195,12 +190,12 @@ def _parameters(config: Config) -> Iterator[Html]:
         ]
         if rows:
             yield element("h3", group)
-            yield table(("Parameter", "Symbol", "Value", "From", "What it is"), rows, "parameters")
+            yield wide_table(("Parameter", "Symbol", "Value", "From", "What it is"), rows, "parameters")
 
 
-def _parameter(config: Config, key: str, value: Value) -> list[str]:
+def _parameter(config: Config, key: str, value: Value) -> list[Content]:
     parameter = config.parameter(key)
-    return [parameter.label, Html(formula_html(parameter.symbol)), value_text(parameter, value)]
+    return [parameter.label, formula_html(parameter.symbol), value_text(parameter, value)]
 
 
 def _before(paper: Mapping[str, Value], key: str) -> str:
@@ -211,15 +206,15 @@ def _before(paper: Mapping[str, Value], key: str) -> str:
 
 
 def _words(key: str) -> Html:
-    return element("small", Html(words_html(PARAMETER[key].description)))
+    return element("small", words_html(PARAMETER[key].description))
 
 
 def _checks(run: Trajectory) -> Html:
     checks = [*balances(run), drift(run)] if len(run.t) > 1 else [drift(run)]
-    rows = [
+    rows: list[list[Content]] = [
         [check.name, joined((check.value, _judgement(check.good))), check.meaning] for check in (*checks, *work(run))
     ]
-    return table((), rows, "facts")
+    return wide_table((), rows, "facts")
 
 
 def _judgement(good: bool | None) -> Html:

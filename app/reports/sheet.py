@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from datetime import datetime
-from importlib.metadata import version
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,15 +12,19 @@ from PIL import Image
 
 from app.format.colours import Palette, wheel_palette
 from app.format.load_unit import LoadUnit, comparison_rows, load_unit
-from app.reports.sheet_page import ALARM, DPI, GREY, HEIGHT, INK, MARGIN, WIDTH, Page, plain
+from app.reports.drawings import AxesStyle, file_of, plain_axes, stamp
+from app.reports.sheet_page import ALARM, GREY, HEIGHT, INK, LOOK, MARGIN, WIDTH, Sheet, plain
 from app.reports.sheet_tables import Tables
-from app.reports.side_view import draw_side_view
+from app.reports.side_view import draw_side_view, highest_load
 from model.analysis.ride import warnings
 from model.simulation.trajectory import Trajectory, wheel_names
 
 LEFT, RIGHT = 5.25, 5.2  # inches, like all lengths: widths of the columns, picture and plots; tables
 PICTURE = 2.6  # height
 NAMED = 10  # curves of one plot, at most
+STYLE = AxesStyle(
+    title=7.2, names=6.8, numbers=6.4, above=3.0, to_name=2.0, to_number=2.0, tick=2.0, line=0.5, grid=0.5
+)  # of the plots
 HULL = "Hull"  # the curve of its acceleration
 TOP, BOTTOM = HEIGHT - 1.17, 0.5  # of the columns
 MODEL = "Half a vehicle, plane motion, the track as imaginary wheels after Mahalingam & Padmanabhan; loads of one side."
@@ -35,18 +38,15 @@ def stamped_figure(
     suffix: str,
     time: float | None = None,
 ) -> bytes:
-    """The page as a ".png" or ".svg" file: A4, landscape. May be called on any thread.
+    """The sheet as a ".png" or ".svg" file: A4, landscape. May be called on any thread.
 
     picture: PNG or JPEG of the scene at `time`, s, which is then marked in the plots. Without a picture the vehicle is
     drawn from its side, without a time at that of the highest wheel load. Raises ValueError for another suffix.
     """
     if suffix not in (".png", ".svg"):
         raise ValueError(f"a figure cannot be saved as {suffix}: only as .png or .svg")
-    page = compose(trajectory, baseline, picture, title, time)
-    maker = {".png": "Software", ".svg": "Creator"}[suffix]
-    file = io.BytesIO()
-    page.figure.savefig(file, format=suffix[1:], dpi=DPI, metadata={"Title": title, maker: _stamp()})
-    return file.getvalue()
+    sheet = compose(trajectory, baseline, picture, title, time)
+    return file_of(sheet.figure, title, suffix)
 
 
 def compose(
@@ -55,51 +55,47 @@ def compose(
     picture: bytes | None,
     title: str,
     time: float | None = None,
-) -> Page:
-    """The page that `stamped_figure` saves."""
-    page, palette = Page(), wheel_palette(trajectory.system.n, trajectory.system.m)
+) -> Sheet:
+    """The sheet that `stamped_figure` saves."""
+    sheet, palette = Sheet(), wheel_palette(trajectory.system.n, trajectory.system.m)
     if time is None and picture is None:
-        time = float(trajectory.t[trajectory.normal_load.max(axis=1).argmax()])
-    _head(page, trajectory, baseline, title)
-    _picture(page, trajectory, picture, palette, time)
-    _plots(page, trajectory, baseline, palette, time)
+        time = highest_load(trajectory)
+    _head(sheet, trajectory, baseline, title)
+    _picture(sheet, trajectory, picture, palette, time)
+    _plots(sheet, trajectory, baseline, palette, time)
     colours = dict(zip(wheel_names(trajectory.system), palette.wheels, strict=True))
-    tables = Tables(page, WIDTH - MARGIN - RIGHT, TOP - 0.06, BOTTOM, RIGHT)
+    tables = Tables(sheet, WIDTH - MARGIN - RIGHT, TOP - 0.06, BOTTOM, RIGHT)
     tables.draw(
         comparison_rows(trajectory, baseline), colours, trajectory.config, None if baseline is None else baseline.config
     )
-    _foot(page, trajectory)
-    return page
+    _foot(sheet, trajectory)
+    return sheet
 
 
-def _stamp() -> str:
-    return f"Trackride {version('trackride')}"
-
-
-def _head(page: Page, trajectory: Trajectory, baseline: Trajectory | None, title: str) -> None:
+def _head(sheet: Sheet, trajectory: Trajectory, baseline: Trajectory | None, title: str) -> None:
     right, y = WIDTH - MARGIN, HEIGHT - 0.65
-    page.write(MARGIN, y, plain(title, 72), 15, weight="bold")
-    page.write(right, y + 0.1, _stamp(), 8, weight="bold", ha="right")
-    page.write(right, y - 0.06, datetime.now().strftime("%Y-%m-%d %H:%M"), 8, color=GREY, ha="right")
+    sheet.write(MARGIN, y, plain(title, 72), 15, weight="bold")
+    sheet.write(right, y + 0.1, stamp(), 8, weight="bold", ha="right")
+    sheet.write(right, y - 0.06, datetime.now().strftime("%Y-%m-%d %H:%M"), 8, color=GREY, ha="right")
     words = plain(trajectory.config.name, 50)
     if baseline is not None:
         other = plain(baseline.config.name, 50)
         which = "" if other == words else f", {other}"
         words = f"{words}.   Solid lines: this run; pale dashed lines: the baseline{which}."
-    page.write(MARGIN, y - 0.22, words, 8.5, color=GREY)
-    page.rule(MARGIN, y - 0.32, WIDTH - 2 * MARGIN, INK, 0.01)
+    sheet.write(MARGIN, y - 0.22, words, 8.5, color=GREY)
+    sheet.rule(MARGIN, y - 0.32, WIDTH - 2 * MARGIN, INK, 0.01)
 
 
-def _foot(page: Page, trajectory: Trajectory) -> None:
-    page.write(MARGIN, 0.27, MODEL, 6.2, color=GREY)
+def _foot(sheet: Sheet, trajectory: Trajectory) -> None:
+    sheet.write(MARGIN, 0.27, MODEL, 6.2, color=GREY)
     cautions = [] if trajectory.complete else [f"the run ended early: {trajectory.status}"]
     cautions += [warning.what for warning in warnings(trajectory)]
     if cautions:
-        page.write(WIDTH - MARGIN, 0.27, plain(f"Mind: {'; '.join(cautions)}", 105), 6.2, color=ALARM, ha="right")
+        sheet.write(WIDTH - MARGIN, 0.27, plain(f"Mind: {'; '.join(cautions)}", 105), 6.2, color=ALARM, ha="right")
 
 
-def _picture(page: Page, trajectory: Trajectory, picture: bytes | None, palette: Palette, time: float | None) -> None:
-    axes = page.axes(MARGIN, TOP - PICTURE, LEFT, PICTURE)
+def _picture(sheet: Sheet, trajectory: Trajectory, picture: bytes | None, palette: Palette, time: float | None) -> None:
+    axes = sheet.axes(MARGIN, TOP - PICTURE, LEFT, PICTURE)
     if picture is not None:
         axes.imshow(np.asarray(Image.open(io.BytesIO(picture)).convert("RGB")), interpolation="lanczos")
         axes.set_axis_off()
@@ -108,11 +104,11 @@ def _picture(page: Page, trajectory: Trajectory, picture: bytes | None, palette:
         draw_side_view(axes, trajectory, palette, time)
     if time is not None:
         words = f"t = {time:.2f} s" + ("; arrows: normal loads" if picture is None else "")
-        page.write(MARGIN, TOP + 0.02, words, 6.2, color=GREY)
+        sheet.write(MARGIN, TOP + 0.02, words, 6.2, color=GREY)
 
 
 def _plots(
-    page: Page, trajectory: Trajectory, baseline: Trajectory | None, palette: Palette, time: float | None
+    sheet: Sheet, trajectory: Trajectory, baseline: Trajectory | None, palette: Palette, time: float | None
 ) -> None:
     """Loads of road wheels and of imaginary wheels, if there are any, and the hull's acceleration, over time."""
     names = wheel_names(trajectory.system)
@@ -126,16 +122,18 @@ def _plots(
     foot, between, indent = BOTTOM + 0.26, 0.3, 0.4
     height = (TOP - PICTURE - 0.32 - foot - between * (len(plots) - 1)) / len(plots)
     for k, (title, labels, colours) in enumerate(plots):
-        axes = page.axes(MARGIN + indent, foot + k * (height + between), LEFT - indent, height)
+        axes = sheet.axes(MARGIN + indent, foot + k * (height + between), LEFT - indent, height)
         if baseline is not None:
             _draw(axes, baseline, unit, labels, colours, lw=0.7, alpha=0.5, dashes=(3, 1.5))
         _draw(axes, trajectory, unit, labels, colours, lw=0.8)
-        _dress(axes, title, float(trajectory.t[-1]), time)
+        plain_axes(axes, LOOK, title, "Time, s" if k == 0 else "", style=STYLE)
+        axes.set_xlim(0, max(float(trajectory.t[-1]), 1e-3))
+        axes.margins(y=0.06)
+        if time is not None:
+            axes.axvline(time, color=GREY, lw=0.7, ls=(0, (1, 1.5)))
         if len(labels) > 1:
             _name(axes, labels, colours)
         axes.tick_params(labelbottom=k == 0)
-        if k == 0:
-            axes.set_xlabel("Time, s", fontsize=6.8, color=INK, labelpad=2)
 
 
 def _draw(
@@ -163,16 +161,3 @@ def _name(axes: Axes, labels: Sequence[str], colours: Sequence[str]) -> None:
             color=colours[k],
             weight="bold",
         )
-
-
-def _dress(axes: Axes, title: str, end: float, time: float | None) -> None:
-    axes.set_title(title, fontsize=7.2, color=INK, loc="left", pad=3, weight="bold")
-    axes.set_xlim(0, max(end, 1e-3))
-    axes.margins(y=0.06)
-    axes.grid(color="#e4e7ea", lw=0.5)
-    axes.set_axisbelow(True)
-    axes.tick_params(labelsize=6.4, length=2, width=0.5, color=GREY, labelcolor=INK, pad=2)
-    for side, spine in axes.spines.items():
-        spine.set(lw=0.5, color=GREY, visible=side in ("left", "bottom"))
-    if time is not None:
-        axes.axvline(time, color=GREY, lw=0.7, ls=(0, (1, 1.5)))

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from app.reports.drawings import LIGHT_LOOK
+
 WIDTH, HEIGHT = 11.69, 8.27
 MARGIN = 0.45
 DPI = 220  # of a PNG
-INK, GREY, PALE, BAND, MARKED, ALARM = "#1c2024", "#66707a", "#c9ced4", "#f1f3f5", "#e3eefa", "#b3261e"
+LOOK = replace(LIGHT_LOOK, grid="#e4e7ea")
+INK, GREY = LOOK.ink, LOOK.grey
+PALE, BAND, MARKED, ALARM = "#c9ced4", "#f1f3f5", "#e3eefa", "#b3261e"
 
 
-class Page:
+class Sheet:
     """Wraps a matplotlib Figure, without pyplot and its global state."""
 
     def __init__(self) -> None:

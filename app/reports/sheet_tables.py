@@ -7,7 +7,7 @@ from typing import Any
 from app.format.differences import change_text, row_texts
 from app.format.load_unit import heading
 from app.format.parameters import value_text
-from app.reports.sheet_page import BAND, GREY, MARKED, Page, plain
+from app.reports.sheet_page import BAND, GREY, MARKED, Sheet, plain
 from model.analysis.ride import AIR_TIME, LOAD_PEAK, LOAD_RMS, TRAVEL, Row
 from model.config.config import Config
 from model.config.parameters import NOTES, PARAMETER, Parameter
@@ -26,8 +26,8 @@ GAP = 0.2  # between the two columns of parameters
 class Tables:
     """A column of tables from (x, top) downwards, of some width, that ends above `bottom`; inches."""
 
-    def __init__(self, page: Page, x: float, top: float, bottom: float, width: float) -> None:
-        self._page, self._x, self._width = page, x, width
+    def __init__(self, sheet: Sheet, x: float, top: float, bottom: float, width: float) -> None:
+        self._sheet, self._x, self._width = sheet, x, width
         self._y, self._height = top, top - bottom
 
     def draw(self, rows: list[Row], colours: dict[str, str], config: Config, baseline: Config | None) -> None:
@@ -60,26 +60,26 @@ class Tables:
         self._other_rows([(config.parameter(key), values[key]) for key in same])
 
     def _head(self, title: str, remark: str = "") -> None:
-        self._page.write(self._x, self._y, title, HEAD, weight="bold")
-        self._page.write(self._x + self._width, self._y, remark, SUBHEAD, color=GREY, ha="right")
+        self._sheet.write(self._x, self._y, title, HEAD, weight="bold")
+        self._sheet.write(self._x + self._width, self._y, remark, SUBHEAD, color=GREY, ha="right")
         self._rule()
 
     def _rule(self) -> None:
         self._y -= 0.05
-        self._page.rule(self._x, self._y, self._width)
+        self._sheet.rule(self._x, self._y, self._width)
 
     def _next(self, colour: str = "", x: float | None = None, width: float | None = None) -> None:
         """Go down a row, on a bar if a colour is given."""
         self._y -= self._row
         if colour:
-            self._page.bar(x or self._x, self._y - 0.24 * self._row, width or self._width, self._row, colour)
+            self._sheet.bar(x or self._x, self._y - 0.24 * self._row, width or self._width, self._row, colour)
 
     def _remark(self, text: str) -> None:
         self._next()
-        self._page.write(self._x, self._y, text, SUBHEAD, color=GREY)
+        self._sheet.write(self._x, self._y, text, SUBHEAD, color=GREY)
 
     def _cell(self, x: float, text: str, **style: Any) -> None:
-        self._page.write(x, self._y, text, self._size, **style)
+        self._sheet.write(x, self._y, text, self._size, **style)
 
     # ── Ride figures ──
 
@@ -87,7 +87,7 @@ class Tables:
         heads = ("now", "baseline", "change") if compared else ("now",)
         ends = [self._x + self._width - 0.7 * k for k in reversed(range(len(heads)))]
         for end, head in zip(ends, heads, strict=True):
-            self._page.write(end, self._y, head, SUBHEAD, color=GREY, ha="right")
+            self._sheet.write(end, self._y, head, SUBHEAD, color=GREY, ha="right")
         self._head("Ride")
         for row in rows:
             self._next()
@@ -103,15 +103,15 @@ class Tables:
         block = (self._width - NAMES) / len(WHEEL_FIGURES)
         rights = [self._x + NAMES + (k + 1) * block for k in range(len(WHEEL_FIGURES))]
         offsets = [0.36 * k for k in reversed(range(len(heads)))]
-        self._page.write(self._x, self._y, "Wheel", SUBHEAD, weight="bold")
+        self._sheet.write(self._x, self._y, "Wheel", SUBHEAD, weight="bold")
         for right, figure in zip(rights, WHEEL_FIGURES, strict=True):
             words = heading(figure.label, list(rows.values()))
-            self._page.write(right, self._y, words, SUBHEAD, weight="bold", ha="right")
+            self._sheet.write(right, self._y, words, SUBHEAD, weight="bold", ha="right")
         if compared:
             self._y -= 0.125
             for right in rights:
                 for offset, head in zip(offsets, heads, strict=True):
-                    self._page.write(right - offset, self._y, head, SUBHEAD, color=GREY, ha="right")
+                    self._sheet.write(right - offset, self._y, head, SUBHEAD, color=GREY, ha="right")
         self._rule()
         for number, name in enumerate(names):
             self._next(BAND if number % 2 == 0 else "")

@@ -14,7 +14,7 @@ from app.view3d.meshes import running_gear
 from app.view3d.meshes.hull import hull
 from app.view3d.meshes.solids import Part
 from app.view3d.snapshot import Poses, Scene, Snapshot, build_scene
-from model.simulation.trajectory import Trajectory
+from model.simulation.trajectory import Trajectory, wheel_names
 
 LAMP = np.array([0.25, -0.55, 0.8])  # towards the light: x forward, y to the left, z up
 DIM = 0.55  # brightness of faces turned away from the light
@@ -26,9 +26,9 @@ def draw_side_view(axes: Axes, trajectory: Trajectory, palette: Palette, time: f
     """Fill axes, whose shape is kept, with the vehicle on its road at a time, s; arrows are the normal loads."""
     scene = build_scene(trajectory)
     now = scene.at(time)
-    system, layout = scene.system, scene.layout
-    s = layout.scale
-    left, right = layout.idler.x - ROOM * s, layout.sprocket.x + (ROOM + 0.5) * s
+    system, measures = scene.system, scene.measures
+    s = measures.scale
+    left, right = measures.idler.x - ROOM * s, measures.sprocket.x + (ROOM + 0.5) * s
     box = axes.get_window_extent()
     height = (right - left) * box.height / box.width
     bottom = float(now.hull.positions[0, 2]) - 0.3 * (height - 2.1 * s) - 0.25 * s
@@ -49,15 +49,15 @@ def draw_side_view(axes: Axes, trajectory: Trajectory, palette: Palette, time: f
         belt[:, 0],
         belt[:, 2],
         color=_shade(running_gear.SHOE[:3], 0.8),
-        lw=layout.shoe_thickness / points,
+        lw=measures.shoe_thickness / points,
         dashes=(2.2, 0.25),
     )
     for poses, radius in (
-        (_right(now.sprockets), layout.sprocket.radius),
-        (_right(now.road_wheels), layout.tyre_radius),
+        (_right(now.sprockets), measures.sprocket.radius),
+        (_right(now.road_wheels), measures.tyre_radius),
     ):
         for pose in zip(poses.positions, poses.wxyzs, strict=True):
-            _draw_wheel(axes, *pose, radius - layout.shoe_thickness * (radius != layout.tyre_radius))
+            _draw_wheel(axes, *pose, radius - measures.shoe_thickness * (radius != measures.tyre_radius))
     for position in _right(now.imaginary_wheels).positions:
         blue = _shade(running_gear.IMAGINARY)
         axes.add_patch(
@@ -75,7 +75,12 @@ def draw_side_view(axes: Axes, trajectory: Trajectory, palette: Palette, time: f
             "shrinkB": 0,
         }
         axes.annotate("", arrow[1, ::2], arrow[0, ::2], arrowprops=style, zorder=7)
-    _label(axes, now, palette, system.n, points)
+    _label(axes, scene, now, palette, points)
+
+
+def highest_load(run: Trajectory) -> float:
+    """When a wheel carries most, s: the moment to draw where nobody has chosen one."""
+    return float(run.t[run.normal_load.max(axis=1).argmax()])
 
 
 def _right(poses: Poses) -> Poses:
@@ -97,7 +102,7 @@ def _angle(wxyz: np.ndarray) -> float:
 def _draw_hull(axes: Axes, scene: Scene, now: Snapshot) -> None:
     """Its faces that are seen from the right, the farthest first."""
     faces, shades = [], []
-    for part in hull(scene.layout):
+    for part in hull(scene.measures):
         corners = part.vertices[part.faces]
         normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-12)[:, None]
@@ -145,11 +150,10 @@ def _draw_arms(axes: Axes, scene: Scene, now: Snapshot, palette: Palette) -> Non
         )
 
 
-def _label(axes: Axes, now: Snapshot, palette: Palette, n: int, points: float) -> None:
+def _label(axes: Axes, scene: Scene, now: Snapshot, palette: Palette, points: float) -> None:
     """R1… and below them I1…, under the ground where the wheels touch; points: m of the view for each."""
     feet = now.arrows[: len(palette.wheels), 0]
-    names = [f"R{k + 1}" for k in range(n)] + [f"I{k + 1}" for k in range(len(feet) - n)]
-    for name, foot, colour in zip(names, feet, palette.wheels, strict=True):
+    for name, foot, colour in zip(wheel_names(scene.system), feet, palette.wheels, strict=True):
         y = feet[:, 2].min() - (9 if name[0] == "R" else 17) * points
         axes.text(foot[0], y, name, color=colour, fontsize=5.5, ha="center", va="center", zorder=8)
 

@@ -24,7 +24,7 @@ from app.runs.runner import Runner
 from app.session.transfers import Download, Transfers
 from app.session.window import VehicleView, Window
 from app.session.workspace import Workspace
-from app.view3d.view import Stage
+from app.view3d.view import View3D
 from model.config.config import Config
 from model.simulation.simulate import simulate
 from model.simulation.trajectory import Trajectory
@@ -51,7 +51,7 @@ class Session:
         config: Config,
         *,
         run: Simulate = simulate,
-        make_view: Callable[[viser.ClientHandle, bool], VehicleView] = Stage,
+        make_view: Callable[[viser.ClientHandle, bool], VehicleView] = View3D,
     ) -> None:
         """presets: name -> configuration, among them `preset`; config: what to run first."""
         self._lock = threading.Lock()  # of the next six
@@ -206,11 +206,14 @@ class Session:
                 self._playback.playing = False
         self.post("mode", lambda: self._window.show_mode())
 
-    def set_switch(self, switch: str, on: bool | float) -> None:
-        self.post(switch, lambda: self._window.set_switch(switch, on))
+    def set_switch(self, switch: str, on: bool) -> None:
+        self.post(f"switch {switch}", lambda: self._window.set_switch(switch, on))
 
     def toggle_switch(self, switch: str) -> None:
-        self.post(switch, lambda: self._window.toggle_switch(switch))
+        self.post(f"switch {switch}", lambda: self._window.toggle_switch(switch))
+
+    def set_arrow_scale(self, scale: float) -> None:
+        self.post("arrow scale", lambda: self._window.set_arrow_scale(scale))
 
     def set_dark(self, dark: bool) -> None:
         self.post("dark", lambda: self._workspace.set_dark(dark))

@@ -43,13 +43,7 @@ LAID_OUT_WITHIN = 3.0  # s in which a page tells that its panels are laid out; a
 
 
 class VehicleView(Protocol):
-    """The 3-D view: app.view3d.view.Stage, or a stand-in."""
-
-    follow: bool
-    show_arrows: bool
-    show_labels: bool
-
-    show_surroundings: bool
+    """The 3-D view: app.view3d.view.View3D, or a stand-in."""
 
     def show(self, trajectory: Trajectory) -> None: ...
 
@@ -68,7 +62,13 @@ class VehicleView(Protocol):
     @property
     def load_top(self) -> float | None: ...
 
-    def set_view(self, name: Any) -> None: ...
+    def set_view(self, standpoint: Any) -> None: ...
+
+    def set_switch(self, name: str, on: bool) -> None: ...
+
+    def set_arrow_scale(self, scale: float) -> None: ...
+
+    def show_surroundings(self, on: bool) -> None: ...
 
     def set_dark(self, dark: bool) -> None: ...
 
@@ -350,9 +350,14 @@ class Window:
         elif wheel is not None:
             self.pick_wheel(None)
 
-    def set_switch(self, switch: str, on: bool | float) -> None:
-        """Turn something of the 3-D view on or off, or set its size."""
-        setattr(self.view, switch, on)
+    def set_switch(self, switch: str, on: bool) -> None:
+        """Turn something of the 3-D view on or off."""
+        self.view.set_switch(switch, on)
+        self._drawn = None
+
+    def set_arrow_scale(self, scale: float) -> None:
+        """Make the force arrows longer or shorter."""
+        self.view.set_arrow_scale(scale)
         self._drawn = None
 
     def toggle_switch(self, switch: str) -> None:
@@ -361,7 +366,7 @@ class Window:
 
     def show_surroundings(self, on: bool) -> None:
         """Sky and ground."""
-        self.view.show_surroundings = on
+        self.view.show_surroundings(on)
 
     @property
     def dark(self) -> bool:

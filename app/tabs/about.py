@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import html
 from functools import cache
 from typing import NamedTuple
 
-from app.format.markup import formula_html, page, words_html
+from app.format.markup import Html, element, formula_html, page, row, table, words_html
 from app.format.parameters import value_text
 from model.config.parameters import GROUPS, NOTES, PARAMETERS, Parameter
 
@@ -94,27 +93,30 @@ SOURCE = (
 @cache
 def about_html() -> str:
     """HTML of the whole tab."""
-    laws = "".join(
-        f'<h4>{law.title} <small>{law.numbers}</small></h4><div class="trackride-formula">'
-        f"{'<br>'.join(map(formula_html, law.formulas))}</div><p>{words_html(law.words)}</p>"
-        for law in LAWS
-    )
-    tables = "".join(_group(group) for group in GROUPS if group != NOTES)
-    return page(f"<p>{SOURCE}</p>{laws}<h3>Parameters</h3>{tables}")
+    laws = (part for law in LAWS for part in _law(law))
+    tables = (part for group in GROUPS if group != NOTES for part in _group(group))
+    return page(element("p", SOURCE), *laws, element("h3", "Parameters"), *tables)
 
 
-def _group(group: str) -> str:
-    rows = "".join(_row(parameter) for parameter in PARAMETERS if parameter.group == group)
-    head = "<tr><th>Name</th><th>Symbol</th><th>Default</th><th>From</th></tr>"
-    return f'<h4>{group}</h4><table class="trackride-parameters">{head}{rows}</table>'
+def _law(law: Law) -> list[Html]:
+    """Its heading, its formulas, one below the other, and what they say."""
+    first, *others = map(formula_html, law.formulas)
+    formulas = first, *(part for formula in others for part in (element("br"), formula))
+    return [
+        element("h4", law.title, " ", element("small", law.numbers)),
+        element("div", *formulas, class_="trackride-formula"),
+        element("p", words_html(law.words)),
+    ]
 
 
-def _row(parameter: Parameter) -> str:
-    return (
-        f'<tr title="{html.escape(parameter.description)}"><td>{html.escape(parameter.label)}</td>'
-        f"<td>{formula_html(parameter.symbol)}</td><td>{html.escape(_default(parameter))}</td>"
-        f"<td>{html.escape(parameter.source)}</td></tr>"
-    )
+def _group(group: str) -> list[Html]:
+    rows = [_row(parameter) for parameter in PARAMETERS if parameter.group == group]
+    return [element("h4", group), table(("Name", "Symbol", "Default", "From"), rows, "trackride-parameters")]
+
+
+def _row(parameter: Parameter) -> Html:
+    cells = parameter.label, formula_html(parameter.symbol), _default(parameter), parameter.source
+    return row(cells, titled=False, title=parameter.description)
 
 
 def _default(parameter: Parameter) -> str:

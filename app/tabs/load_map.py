@@ -10,12 +10,12 @@ from PIL import Image
 
 from app.format.load_colours import RAMP, load_colours
 from app.format.load_unit import load_unit
-from app.format.markup import page
+from app.format.markup import Html, element, page
 from app.plots.curves import at_times
+from app.plots.ticks import TICKS, ticks
 from model.simulation.trajectory import Trajectory, wheel_names
 
 COLUMNS = 600, 4000  # of a picture at most: about as many as it has pixels on the page, and to be looked at near by
-TICKS = 5  # of an axis, at least; twice as many at most
 LEAST_TOP = 1e-3  # of a colour bar, in the loads' unit
 READING = (
     "Front wheel on top; empty where a wheel is in the air. Bands that slant down to the right pass from the front "
@@ -30,7 +30,7 @@ def load_map(run: Trajectory, baseline: Trajectory | None = None) -> str:
     baseline has maps of its own below the run's, in the same colours. The page draws the axis of time, for it zooms.
     """
     if not len(run.t):
-        return page("<p>This run has no samples.</p>")
+        return page(element("p", "This run has no samples."))
     runs = [("", run)] + ([(", baseline", baseline)] if baseline is not None and len(baseline.t) else [])
     maps, unit = [], load_unit(run.system)
     for family, letter in (("road", "R"), ("imaginary", "I")):
@@ -44,37 +44,31 @@ def load_map(run: Trajectory, baseline: Trajectory | None = None) -> str:
         top = max((np.nanmax(load, initial=LEAST_TOP) for _, load, _ in shown), default=LEAST_TOP)
         maps += [(title, load, names, float(top)) for title, load, names in shown]
     rows = sum(len(names) for _, _, names, _ in maps)
-    sections = "".join(_map(title, load, names, top, len(names) / rows) for title, load, names, top in maps)
+    sections = (_map(title, load, names, top, len(names) / rows) for title, load, names, top in maps)
     start, span = float(run.t[0]), max(float(run.t[-1] - run.t[0]), 1e-9)
-    return page(
-        f'<trackride-map start="{start}" span="{span}" style="--maps:{len(maps)}">{sections}</trackride-map>'
-        f"<p>{READING}</p>"
-    )
+    all_maps = element("trackride-map", *sections, start=f"{start}", span=f"{span}", style=f"--maps:{len(maps)}")
+    return page(all_maps, element("p", READING))
 
 
-def _map(title: str, load: np.ndarray, names: list[str], top: float, share: float) -> str:
+def _map(title: str, load: np.ndarray, names: list[str], top: float, share: float) -> Html:
     """load: (N, K), a column for each name, NaN for unknown; top: of the colours; share: of the height."""
     far, near = (_picture(load, top, columns) for columns in COLUMNS)
-    loads = "".join(
-        f'<span style="bottom:{100 * tick / top:.3f}%">{tick:g}</span>' for tick in ticks(0.0, top, 2 * TICKS * share)
+    loads = (
+        element("span", f"{tick:g}", style=f"bottom:{100 * tick / top:.3f}%")
+        for tick in ticks(0.0, top, 2 * TICKS * share)
     )
-    return (
-        f'<section class="trackride-map" style="--wheels:{len(names)};--share:{share:.4f}"><h4>{title}</h4>'
-        f'<div class="names">{"".join(f"<span>{name}</span>" for name in names)}</div>'
-        f'<div class="field"><img class="far" alt="{title}" src="{far}"><img class="near" alt="" src="{near}">'
-        f"<i></i><b></b></div>"
-        f'<div class="bar" style="background:linear-gradient(to top, {", ".join(RAMP)})">{loads}</div>'
-        f'<div class="times"></div><div class="axis">Time, s</div></section>'
+    pictures = element("img", class_="far", alt=title, src=far), element("img", class_="near", alt="", src=near)
+    return element(
+        "section",
+        element("h4", title),
+        element("div", *(element("span", name) for name in names), class_="names"),
+        element("div", *pictures, element("i"), element("b"), class_="field"),
+        element("div", *loads, class_="bar", style=f"background:linear-gradient(to top, {', '.join(RAMP)})"),
+        element("div", class_="times"),
+        element("div", "Time, s", class_="axis"),
+        class_="trackride-map",
+        style=f"--wheels:{len(names)};--share:{share:.4f}",
     )
-
-
-def ticks(low: float, high: float, least: float = TICKS) -> list[float]:
-    """Round numbers from low to high, `least` of them or a few more, in steps of 1, 2 or 5 times a power of ten."""
-    rough = (high - low) / least
-    power = 10.0 ** np.floor(np.log10(rough))
-    step = max(factor * power for factor in (1.0, 2.0, 5.0) if factor * power <= rough * (1 + 1e-9))
-    first, last = np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9)
-    return [float(round(k * step, 9)) + 0.0 for k in np.arange(first, last + 1)]
 
 
 def _picture(load: np.ndarray, top: float, columns: int) -> str:

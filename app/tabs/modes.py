@@ -1,17 +1,18 @@
-"""The vehicle's own ways to swing, as HTML and as choices. Pure."""
+"""The vehicle's natural modes, as HTML and as choices. Pure."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-from app.format.markup import page
+from app.format.markup import Html, element, page, table
 from model.analysis.modes import BOUNCE, PITCH, SURGE, Creep, Mode, Modes
 
 WORTH_TELLING = 0.1  # of a mode's kinetic energy
 WORDS = {BOUNCE: "hull up and down", PITCH: "hull nodding", SURGE: "hull fore and aft"}
 NOTE = (
-    "Small motions about the vehicle at rest. Frequency: undamped. Damping: part of what would keep it from swinging. "
-    "The nearer v/λ and its multiples come to bounce or pitch, the harder the ride; damping flattens the peak."
+    "Small motions about the vehicle at rest. Frequency: undamped. Damping: share of the damping with which it "
+    "would no longer swing. "
+    "The nearer v/λ and its multiples come to bounce or pitch, the harder the ride; damping lowers the peak."
 )
 
 
@@ -22,25 +23,20 @@ def mode_titles(modes: Modes | None) -> tuple[str, ...]:
 
 
 def modes_page(excitation: float | None, modes: Modes | None) -> str:
-    """HTML: what drives the vehicle, v/λ in Hz, and all its modes. None of it is a user's text."""
-    head = "<tr><th></th><th>Frequency</th><th>Damping</th><th>What moves, by its part in the energy</th></tr>"
-    rows = ""
+    """HTML of what drives the vehicle, v/λ in Hz, and all its modes."""
+    rows = []
     if excitation is not None:
-        rows += _row("v/λ", f"{excitation:.2f} Hz", "", "waves met each second: the road shakes here, and at multiples")
-    if modes is None:
-        return page(f"{_table(head + rows)}<p>The vehicle has no rest pose to swing about.</p>")
-    for k, mode in enumerate(modes.swinging, 1):
+        meaning = "waves met each second: the road shakes the vehicle at this frequency and its multiples"
+        rows.append(["v/λ", f"{excitation:.2f} Hz", "", meaning])
+    for number, mode in enumerate(() if modes is None else modes.swinging, 1):
         damping = f"{100 * mode.damping_ratio:.0f} %"
-        rows += _row(f"{k} {mode.name}", f"{mode.frequency:.2f} Hz", damping, moving(mode))
-    return page(f"{_table(head + rows)}<p>{NOTE}</p>{_creeping(modes.creeping)}")
-
-
-def _table(rows: str) -> str:
-    return f'<table class="trackride-facts trackride-modes">{rows}</table>'
-
-
-def _row(name: str, frequency: str, damping: str, meaning: str) -> str:
-    return f"<tr><th>{name}</th><td>{frequency}</td><td>{damping}</td><td>{meaning}</td></tr>"
+        rows.append([f"{number} {mode.name}", f"{mode.frequency:.2f} Hz", damping, moving(mode)])
+    facts = table(
+        ("", "Frequency", "Damping", "What moves, by its part in the energy"), rows, "trackride-facts trackride-modes"
+    )
+    if modes is None:
+        return page(facts, element("p", "The vehicle has no rest pose to swing about."))
+    return page(facts, element("p", NOTE), _creeping(modes.creeping))
 
 
 def moving(mode: Mode) -> str:
@@ -49,9 +45,7 @@ def moving(mode: Mode) -> str:
     return ", ".join(f"{words} {100 * share:.0f}\N{NO-BREAK SPACE}%" for words, share in told if share >= WORTH_TELLING)
 
 
-def _creeping(creeping: Iterable[Creep]) -> str:
+def _creeping(creeping: Iterable[Creep]) -> Html:
     items = ", ".join(f"{creep.name} {creep.decay:.3g}" for creep in creeping)
-    return (
-        "<details><summary>Over-damped: these creep back without swinging</summary>"
-        f"<p>How fast they die away, 1/s: {items}.</p></details>"
-    )
+    summary = element("summary", "Over-damped: these motions die away without swinging")
+    return element("details", summary, element("p", f"How fast they die away, 1/s: {items}."))

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.tabs.load_map import ticks
+from app.format.markup import element
+from app.plots.ticks import ticks
 from model.config.config import Config
 from model.road.road import Road
 from model.simulation.trajectory import Trajectory
@@ -67,25 +68,35 @@ def road_view(road: Road, span: tuple[float, float], x: float, wheels: np.ndarra
     low, high = span
     along = x + np.linspace(-BEHIND, AHEAD, LINE)
     height = np.clip(road.height(along), low, high)
-    right = (along - x + BEHIND) / (BEHIND + AHEAD) * WIDTH
-    up = _up(height, span)
-    line = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(right, up, strict=True))
+    line = " ".join(f"{_across(a, x):.1f},{b:.1f}" for a, b in zip(along, _up(height, span), strict=True))
     under = np.clip(road.height(wheels), low, high)
-    dots = "".join(
-        f'<circle cx="{(wheel - x + BEHIND) / (BEHIND + AHEAD) * WIDTH:.1f}" cy="{at - 3:.1f}" r="3"/>'
+    dots = (
+        element("circle", cx=f"{_across(wheel, x):.1f}", cy=f"{at - 3:.1f}", r="3")
         for wheel, at in zip(wheels, _up(under, span), strict=True)
     )
-    marks = "".join(
-        f'<text x="{(tick - x + BEHIND) / (BEHIND + AHEAD) * WIDTH:.1f}" y="{HEIGHT - 3}">{tick:g} m</text>'
+    distances = (
+        element("text", f"{tick:g} m", x=f"{_across(tick, x):.1f}", y=f"{HEIGHT - 3}")
         for tick in ticks(x - BEHIND, x + AHEAD, 4)
         if x - BEHIND + MARGIN <= tick <= x + AHEAD - MARGIN
     )
     exaggeration = (HEIGHT - FOOT - HEADROOM) / (high - low) * (BEHIND + AHEAD) / WIDTH
-    return (
-        f'<figure class="trackride-road"><svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="Road ahead">'
-        f'<polygon points="0,{HEIGHT - FOOT} {line} {WIDTH},{HEIGHT - FOOT}"/><polyline points="{line}"/>{dots}{marks}'
-        f"</svg><figcaption>Road ahead, heights enlarged {exaggeration:.2g} times</figcaption></figure>"
+    drawing = element(
+        "svg",
+        element("polygon", points=f"0,{HEIGHT - FOOT} {line} {WIDTH},{HEIGHT - FOOT}"),
+        element("polyline", points=line),
+        *dots,
+        *distances,
+        viewBox=f"0 0 {WIDTH} {HEIGHT}",
+        role="img",
+        aria_label="Road ahead",
     )
+    caption = element("figcaption", f"Road ahead, heights enlarged {exaggeration:.2g} times")
+    return str(element("figure", drawing, caption, class_="trackride-road"))
+
+
+def _across(at: float, x: float) -> float:
+    """A place along the road, m, in the drawing about x, m, from its left edge."""
+    return (at - x + BEHIND) / (BEHIND + AHEAD) * WIDTH
 
 
 def _up(height: np.ndarray, span: tuple[float, float]) -> np.ndarray:

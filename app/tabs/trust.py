@@ -1,16 +1,15 @@
-"""How far a run can be trusted: figures of its own correctness, warnings, what was assumed; as HTML. Pure."""
+"""How far a run can be trusted: checks of its correctness, warnings, what was assumed; as HTML. Pure."""
 
 from __future__ import annotations
 
-import html
 from typing import NamedTuple
 
 from app.format.load_unit import load_unit
-from app.format.markup import page, words_html
+from app.format.markup import Content, Html, element, joined, page, table, words_html
 from model.analysis.energy import energy_balance, load_balance
 from model.analysis.ride import RideWarning, motion_warnings, warnings
 from model.config.parameters import number_text
-from model.paper.errata import ERRATA
+from model.paper.errata import ERRATA, Erratum
 from model.road.road import Road
 from model.simulation.trajectory import Trajectory
 
@@ -18,7 +17,7 @@ DRIFT_LIMIT = 1e-5  # m by which joints may be apart
 CLOSING_LIMIT = 0.5  # % of the energy turned over that may be unaccounted for
 FORCE_LIMIT = 1e-6  # of the weight that Newton's law may be broken by
 LEAST_SAMPLES = 2  # of a run that has an energy balance
-LEFT_OPEN = "How deep the wheels sink into the ground is judged when the drive pauses."
+LEFT_OPEN = "How deep the wheels sink into the ground is checked when the drive pauses."
 
 
 class Check(NamedTuple):
@@ -27,34 +26,39 @@ class Check(NamedTuple):
     name: str
     value: str  # with its unit
     meaning: str
-    good: bool | None = None  # None: nothing to be judged
+    good: bool | None = None  # None: there is nothing to judge
 
 
 def trust_html(run: Trajectory, driving: bool = False, road: Road | None = None) -> str:
     """HTML of figures and warnings. driving: the run is a stretch of an endless drive, without balances of its own.
 
-    road: under that stretch; without it, how deep its wheels sank is left open.
+    road: under that stretch; without it nothing is said of how deep its wheels sank.
     """
     if len(run.t) < LEAST_SAMPLES:
-        return page(f"<p>There is nothing to judge: {html.escape(run.status)}.</p>")
+        return page(element("p", f"There is nothing to judge: {run.status}."))
     open_ended = driving and road is None
     found = motion_warnings(run) if open_ended else warnings(run, road)
     checks = [] if driving else balances(run)
-    left_open = f"<p>{LEFT_OPEN}</p>" if open_ended else ""
     return page(
-        f"<h4>Warnings</h4>{_warnings(found)}{left_open}"
-        f"<h4>Does the run obey its laws?</h4>{_table([*checks, drift(run)])}"
-        f"<h4>Work</h4>{_table(work(run))}"
+        element("h4", "Warnings"),
+        _warnings(found),
+        element("p", LEFT_OPEN) if open_ended else "",
+        element("h4", "Does the run obey its laws?"),
+        _table([*checks, drift(run)]),
+        element("h4", "Work"),
+        _table(work(run)),
     )
 
 
 def errata_html() -> str:
-    """HTML of what was settled beyond the paper."""
-    rows = "".join(
-        f"<li><b>{html.escape(e.where)}.</b> {words_html(e.paper)} <em>Here:</em> {words_html(e.reading)}</li>"
-        for e in ERRATA
-    )
-    return page(f"<h4>Assumed beyond the paper, and its misprints</h4><ol>{rows}</ol>")
+    """HTML of what had to be assumed beyond the paper."""
+    items = (element("li", *_erratum(erratum)) for erratum in ERRATA)
+    return page(element("h4", "Assumed beyond the paper, and its misprints"), element("ol", *items))
+
+
+def _erratum(erratum: Erratum) -> list[Content]:
+    paper, reading = words_html(erratum.paper), words_html(erratum.reading)
+    return [element("b", f"{erratum.where}."), " ", paper, " ", element("em", "Here:"), " ", reading]
 
 
 def balances(run: Trajectory) -> list[Check]:
@@ -114,23 +118,24 @@ def work(run: Trajectory) -> list[Check]:
     ]
 
 
-def _warnings(found: list[RideWarning]) -> str:
+def _warnings(found: list[RideWarning]) -> Html:
     if not found:
-        return '<p class="good">None: this is within what the model was made for.</p>'
-    items = "".join(f"<li><b>{html.escape(w.what)}</b><br>{html.escape(w.meaning)}</li>" for w in found)
-    return f'<ul class="bad">{items}</ul>'
+        return element("p", "None: this is within what the model was made for.", class_="good")
+    items = (element("li", element("b", warning.what), element("br"), warning.meaning) for warning in found)
+    return element("ul", *items, class_="bad")
 
 
-def _table(checks: list[Check]) -> str:
-    return f'<table class="trackride-facts">{"".join(map(_row, checks))}</table>'
+def _table(checks: list[Check]) -> Html:
+    rows: list[list[Content]] = [
+        [check.name, joined((check.value, " ", _sign(check.good))), check.meaning] for check in checks
+    ]
+    return table((), rows, "trackride-facts")
 
 
-def _row(check: Check) -> str:
-    sign = {None: "", True: '<span class="good" title="as it should be">✓</span>', False: '<span class="bad">!</span>'}
-    return (
-        f"<tr><th>{html.escape(check.name)}</th><td>{html.escape(check.value)} {sign[check.good]}</td>"
-        f"<td>{html.escape(check.meaning)}</td></tr>"
-    )
+def _sign(good: bool | None) -> Html:
+    if good is None:
+        return Html()
+    return element("span", "✓", class_="good", title="as it should be") if good else element("span", "!", class_="bad")
 
 
 def _energy(joules: float) -> str:

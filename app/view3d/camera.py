@@ -9,16 +9,18 @@ from typing import Any, Literal, NamedTuple, Protocol
 import numpy as np
 import viser
 
-from app.view3d.meshes.layout import Layout
+from app.view3d.meshes.measures import Measures
 
-View = Literal["side", "three-quarter", "front", "wheel"]
+Standpoint = Literal["side", "three-quarter", "front", "wheel"]
 FIELD_OF_VIEW = 0.36  # rad, vertical: a long lens, so that wheels stay round and heights comparable
 FARTHEST = 150.0  # m: well within the sky
 MARGIN = 1.05  # of what is to be in the picture
 OTHER_SIZE = 1.5  # times as long: a vehicle for which the camera goes nearer or further away
 
 
-class Standpoint(NamedTuple):
+class CameraPose(NamedTuple):
+    """Where a camera stands and what it sees."""
+
     position: np.ndarray  # (3,)
     look_at: np.ndarray  # (3,)
     fov: float  # rad, vertical
@@ -34,7 +36,7 @@ class _Aim(NamedTuple):
     top: float
 
 
-VIEWS: dict[View, _Aim] = {
+AIMS: dict[Standpoint, _Aim] = {
     "side": _Aim(90.0, 7.0, None, -0.75, 2.1),
     "three-quarter": _Aim(52.0, 15.0, None, -0.4, 2.0),
     "front": _Aim(12.0, 7.0, None, -0.2, 2.0),
@@ -42,31 +44,31 @@ VIEWS: dict[View, _Aim] = {
 }
 
 
-def standpoint(view: View, layout: Layout, aspect: float) -> Standpoint:
+def camera_pose(standpoint: Standpoint, measures: Measures, aspect: float) -> CameraPose:
     """Where to stand so that the vehicle (for "wheel": its first wheels) fits a picture of this width by height."""
-    aim, s = VIEWS[view], layout.scale
+    aim, s = AIMS[standpoint], measures.scale
     bearing, elevation = np.radians([aim.bearing, aim.elevation])
     ahead, aside = np.cos(bearing), -np.sin(bearing)
     towards = np.array([ahead * np.cos(elevation), aside * np.cos(elevation), np.sin(elevation)])
     right = np.array([-aside, ahead, 0.0])
     up = np.cross(towards, right)
 
-    x = layout.idler.x - 0.7 * s, layout.sprocket.x + 0.8 * s
-    y = -layout.half_width, layout.half_width
+    x = measures.idler.x - 0.7 * s, measures.sprocket.x + 0.8 * s
+    y = -measures.half_width, measures.half_width
     if aim.behind is not None:
-        x = layout.front - aim.behind * s, layout.front + 0.6 * s
-        y = -layout.arrow, -layout.track
+        x = measures.front - aim.behind * s, measures.front + 0.6 * s
+        y = -measures.arrow, -measures.track
     box = np.array([x, y, (aim.bottom * s, aim.top * s)])
     centre = box.mean(axis=1)
     corners = np.array(list(product(*box))) - centre
     half_height = np.tan(FIELD_OF_VIEW / 2) / MARGIN
     spread = np.maximum(np.abs(corners @ right) / aspect, np.abs(corners @ up))
     distance = (corners @ towards + spread / half_height).max()
-    return Standpoint(centre + distance * towards, centre, FIELD_OF_VIEW)
+    return CameraPose(centre + distance * towards, centre, FIELD_OF_VIEW)
 
 
-class Lens(Protocol):
-    """What a standpoint sets and what it depends on: viser's CameraHandle, or a stand-in."""
+class BrowserCamera(Protocol):
+    """The camera that the browser draws with: viser's CameraHandle, or a stand-in."""
 
     fov: float
     position: Any
@@ -90,48 +92,48 @@ class Tab(Protocol):
     def scene(self) -> viser.SceneApi: ...
 
     @property
-    def camera(self) -> Lens: ...
+    def camera(self) -> BrowserCamera: ...
 
     def atomic(self) -> AbstractContextManager[None]: ...
 
 
 class Camera:
-    """Stands where a view wants it, also when the picture takes another shape; the user may move it away."""
+    """Keeps the camera at a standpoint, also when the picture takes another shape; the user may move it away."""
 
     def __init__(self, client: Tab) -> None:
         self._camera = client.camera
         self._client = client
-        self._view: tuple[View, Layout] | None = None
-        self._stood: Standpoint | None = None
+        self._at: tuple[Standpoint, Measures] | None = None
+        self._pose: CameraPose | None = None
         self._aspect = 0.0
         client.camera.max_orbit_distance = FARTHEST
         client.camera.on_update(self._refit)
 
-    def look(self, view: View, layout: Layout) -> None:
+    def look(self, standpoint: Standpoint, measures: Measures) -> None:
         """Go to a standpoint."""
-        self._view = view, layout
+        self._at = standpoint, measures
         self._aspect = _aspect(self._camera)
-        self._stood = standpoint(view, layout, self._aspect)
+        self._pose = camera_pose(standpoint, measures, self._aspect)
         with self._client.atomic():
-            self._camera.fov = self._stood.fov
+            self._camera.fov = self._pose.fov
             self._camera.up_direction = (0.0, 0.0, 1.0)
-            self._camera.position = self._stood.position
-            self._camera.look_at = self._stood.look_at
+            self._camera.position = self._pose.position
+            self._camera.look_at = self._pose.look_at
 
-    def fit(self, layout: Layout) -> None:
-        """Take the same view of another vehicle, unless it is about as long as the former."""
-        if self._view is not None and not 1 / OTHER_SIZE < layout.length / self._view[1].length < OTHER_SIZE:
-            self.look(self._view[0], layout)
+    def fit(self, measures: Measures) -> None:
+        """Go to the same standpoint of another vehicle, unless it is about as long as the one before."""
+        if self._at is not None and not 1 / OTHER_SIZE < measures.length / self._at[1].length < OTHER_SIZE:
+            self.look(self._at[0], measures)
 
-    async def _refit(self, camera: Lens) -> None:
-        """Stand anew when the picture's shape has changed, unless the user has moved."""
-        if self._view is None or self._stood is None or abs(_aspect(camera) / self._aspect - 1) < 0.01:
+    async def _refit(self, camera: BrowserCamera) -> None:
+        """Go there again when the picture's shape has changed, unless the user has moved the camera."""
+        if self._at is None or self._pose is None or abs(_aspect(camera) / self._aspect - 1) < 0.01:
             return
-        moved = np.linalg.norm(camera.position - self._stood.position)
-        if moved < 0.01 * np.linalg.norm(self._stood.position):
-            self.look(*self._view)
+        moved = np.linalg.norm(camera.position - self._pose.position)
+        if moved < 0.01 * np.linalg.norm(self._pose.position):
+            self.look(*self._at)
 
 
-def _aspect(camera: Lens) -> float:
+def _aspect(camera: BrowserCamera) -> float:
     """Width by height of the picture, also while a page is being opened and has no size yet."""
     return max(camera.image_width, 1) / max(camera.image_height, 1)

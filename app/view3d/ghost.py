@@ -1,4 +1,4 @@
-"""The ghost: another run's vehicle in pale lines, in the place of the present one, so that postures compare.
+"""The ghost: another run's vehicle in pale lines, at the place of the present one, so that their poses can be compared.
 
 Lines only: translucent faces would mix with the vehicle's own, in patches, where both stand nearly alike.
 """
@@ -16,35 +16,35 @@ from app.view3d.snapshot import SIDES, Scene
 GHOST = "/ghost"
 THICKNESS = 0.022  # m, of its lines, at the size of the paper's vehicle
 CORNERS = 32  # of a wheel's circle
-OUTSIDE = 0.035  # m from what a line stands for outwards, at the size of the paper's vehicle
+OUTSIDE = 0.035  # m that a line is drawn outside of the part it outlines, at the size of the paper's vehicle
 
 
 class Outline:
     """Hull, wheels and arms as segments between points of the model's bodies. Pure."""
 
     def __init__(self, scene: Scene) -> None:
-        system, layout = scene.system, scene.layout
+        system, measures = scene.system, scene.measures
         bodies = np.arange(len(system.mass))
         circle = np.exp(2j * np.pi * np.arange(CORNERS + 1) / CORNERS)
-        half_arm = complex(*layout.pivot) / 2
-        half_links = np.array([-0.5, 0.5]) * np.array(layout.links)[:, None]
-        wheel_face = layout.disc - OUTSIDE * layout.scale
-        ends = zip(scene.places.on_hull[1:3], (layout.sprocket.radius, layout.idler.radius), strict=True)
+        half_arm = complex(*measures.pivot) / 2
+        half_links = np.array([-0.5, 0.5]) * np.array(measures.links)[:, None]
+        wheel_face = measures.disc - OUTSIDE * measures.scale
+        ends = zip(scene.places.on_hull[1:3], (measures.sprocket.radius, measures.idler.radius), strict=True)
         parts = [(system.chassis, at + radius * circle, wheel_face) for at, radius in ends]
-        parts += [(body, layout.radius * circle, wheel_face) for body in bodies[system.road_wheels]]
-        parts += [(body, layout.radius * circle, layout.disc) for body in bodies[system.imaginary_wheels]]
-        parts += [(body, np.array([-half_arm, half_arm]), layout.arm) for body in bodies[system.road_arms]]
+        parts += [(body, measures.radius * circle, wheel_face) for body in bodies[system.road_wheels]]
+        parts += [(body, measures.radius * circle, measures.disc) for body in bodies[system.imaginary_wheels]]
+        parts += [(body, np.array([-half_arm, half_arm]), measures.arm) for body in bodies[system.road_arms]]
         links = zip(bodies[system.imaginary_arms], half_links, strict=True)
-        parts += [(body, half.astype(complex), layout.link) for body, half in links]
+        parts += [(body, half.astype(complex), measures.link) for body, half in links]
 
         # Body, points in its frame and their places to the left
         lines = [
-            (body, line, np.full(len(line), side * (aside + OUTSIDE * layout.scale)))
+            (body, line, np.full(len(line), side * (aside + OUTSIDE * measures.scale)))
             for side in SIDES
             for body, line, aside in parts
         ]
         foot = scene.places.on_hull[0]
-        lines += [(system.chassis, foot + edge[:, 0] + 1j * edge[:, 2], edge[:, 1]) for edge in hull_edges(layout)]
+        lines += [(system.chassis, foot + edge[:, 0] + 1j * edge[:, 2], edge[:, 1]) for edge in hull_edges(measures)]
         self._body = np.concatenate([np.full(len(line) - 1, body) for body, line, _ in lines])
         self._ends = np.concatenate([np.column_stack([line[:-1], line[1:]]) for _, line, _ in lines])
         self._points = np.zeros((len(self._body), 2, 3), dtype=np.float32)
@@ -69,7 +69,7 @@ class Ghost:
             GHOST,
             self._outline.segments(scene.bodies(0.0), 0.0),
             (0, 0, 0),
-            thickness=THICKNESS * scene.layout.scale,
+            thickness=THICKNESS * scene.measures.scale,
         )
         self.colour(theme)
 

@@ -1,12 +1,14 @@
-"""The wheels' names under the vehicle, with the loads they carry if wanted."""
+"""The wheels' names under the vehicle, with the loads that they carry if the user wants them."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping
 
 import numpy as np
 import viser
 
 from app.format.load_unit import LoadUnit
-from app.view3d.meshes.layout import Layout
+from app.view3d.meshes.measures import Measures
 from app.view3d.nodes import VEHICLE, Frame, update
 
 BELOW = 0.12  # m from the lowest point of the road down to the names of the road wheels of the paper's vehicle
@@ -19,30 +21,30 @@ FIGURE_SPACE = "\u2007"  # as wide as a figure
 class WheelLabels:
     """R1… and below them I1…, under the arrows of the right side."""
 
-    def __init__(self, api: viser.SceneApi, layout: Layout) -> None:
+    def __init__(self, api: viser.SceneApi, measures: Measures) -> None:
         name = f"{VEHICLE}/labels"
         self._frame = Frame(api, name)
-        self._scale, self._y = layout.scale, -layout.arrow
-        between = (np.array(layout.wheel_x)[: len(layout.links)] - layout.links).tolist()
-        families = ("R", layout.wheel_x), ("I", between)
+        self._scale, self._y = measures.scale, -measures.arrow
+        between = (np.array(measures.wheel_x)[: len(measures.links)] - measures.links).tolist()
+        families = ("R", measures.wheel_x), ("I", between)
         self._names = [f"{letter}{k + 1}" for letter, xs in families for k in range(len(xs))]
         self._places = [(x, row) for row, (_, xs) in enumerate(families) for x in xs]  # along the vehicle, and the row
         self._labels = [api.add_label(f"{name}/{text}", text, anchor="center-center") for text in self._names]
         self._texts = self._names
-        ahead = (layout.front + UNIT_AHEAD * self._scale, self._y, -WITH_LOADS[0] * self._scale)
+        ahead = (measures.front + UNIT_AHEAD * self._scale, self._y, -WITH_LOADS[0] * self._scale)
         self._unit = api.add_label(f"{name}/unit", "", position=ahead, anchor="center-center", visible=False)
         self._with_loads = False
         self._arrange()
 
-    def show(self, names: bool, loads: bool) -> None:
-        """Show the names, or the names with their loads, or neither."""
-        self._frame.node.visible = names or loads
-        if loads != self._with_loads:
-            self._with_loads = loads
+    def show(self, on: Mapping[str, bool]) -> None:
+        """Show the names, or the names with their loads, or neither, as the switches say."""
+        self._frame.node.visible = on["names"] or on["loads"]
+        if on["loads"] != self._with_loads:
+            self._with_loads = on["loads"]
             self._arrange()
 
     def write(self, load: np.ndarray, unit: LoadUnit) -> None:
-        """Say these loads (W,), N, in the model's order, in that unit, if loads are shown."""
+        """Write these loads (W,), N, in the model's order, in that unit, if loads are shown."""
         if self._with_loads:
             if self._unit.text != unit.name:
                 self._unit.text = unit.name
@@ -61,7 +63,7 @@ class WheelLabels:
             self._say(self._names)
 
     def _say(self, texts: list[str]) -> None:
-        """Nothing is sent where a label reads so already."""
+        """Write the labels' texts; nothing is sent for a label that has its text already."""
         for label, text, before in zip(self._labels, texts, self._texts, strict=True):
             if text != before:
                 update(label, text=text)

@@ -1,12 +1,12 @@
-"""A mode of the vehicle in place of its run: swinging over and over, with the vehicle at rest as a ghost. Pure."""
+"""A mode of the vehicle, shown instead of its run: swinging again and again, with the vehicle at rest as a ghost."""
 
 from __future__ import annotations
 
 from model.analysis.modes import Mode, mode_trajectory
 from model.config.config import Config
 
-PERIOD = 1.0  # s that a swing takes here, however quick it really is
-EXCURSION = 0.35  # of a wheel's radius: how far what moves furthest goes, so that it is seen
+PERIOD = 1.0  # s that a swing takes in the view, whatever its real frequency
+EXCURSION = 0.35  # of a wheel's radius: how far the point goes that moves farthest
 
 
 class ModeShow:

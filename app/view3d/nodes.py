@@ -1,8 +1,8 @@
-"""The viser nodes of a vehicle, of its road and of what lies around: made once for a shape, moved by snapshots."""
+"""The viser nodes of a vehicle, its road and its surroundings: made once for a shape, moved by snapshots."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from viser import _messages as messages
 from app.format.colours import Colour, Palette, Theme, rgb
 from app.view3d.meshes import running_gear
 from app.view3d.meshes.hull import hull
-from app.view3d.meshes.layout import Layout
+from app.view3d.meshes.measures import Measures
 from app.view3d.meshes.solids import Part, glb, joined, light
 from app.view3d.meshes.surroundings import RoadStrip, ground, shadow_faces, sky
 from app.view3d.snapshot import SIDES, Poses, Scene, Snapshot
@@ -30,7 +30,7 @@ def update(node: viser.SceneNodeHandle, **properties: Any) -> None:
 
 
 def paint(lines: viser.LineSegmentsHandle, colour: Colour) -> None:
-    """Give all segments one colour: viser takes one for all only when they are made."""
+    """Give all segments one colour: once they are made, viser takes a colour for each end only."""
     lines.colors = np.full(lines.points.shape, light(np.array(colour)))
 
 
@@ -52,32 +52,32 @@ class VehicleNodes:
     """A vehicle with its load arrows."""
 
     def __init__(self, api: viser.SceneApi, scene: Scene, now: Snapshot) -> None:
-        layout, system = scene.layout, scene.system
+        measures, system = scene.measures, scene.system
         self._api = api
         self._wheels = system.n, system.m
         self._node = api.add_frame(VEHICLE, show_axes=False)
         self._shadow = api.add_mesh_simple(
             f"{VEHICLE}/shadow", now.shadow, shadow_faces(), color=(0, 0, 0), opacity=0.09
         )
-        idler = (layout.idler.radius - layout.shoe_thickness) / layout.tyre_radius
+        idler = (measures.idler.radius - measures.shoe_thickness) / measures.tyre_radius
         sizes = np.tile([1.0] * system.n + [idler], len(SIDES))
         self._batches: dict[str, viser.BatchedGlbHandle | viser.BatchedMeshHandle] = {
-            "hull": self._painted("hull", hull(layout), now.hull),
-            "road_wheels": self._painted("road_wheels", running_gear.road_wheel(layout), now.road_wheels, sizes),
-            "sprockets": self._painted("sprockets", running_gear.sprocket(layout), now.sprockets),
-            "shoes": self._painted("shoes", running_gear.track_shoe(layout), now.shoes),
+            "hull": self._painted("hull", hull(measures), now.hull),
+            "road_wheels": self._painted("road_wheels", running_gear.road_wheel(measures), now.road_wheels, sizes),
+            "sprockets": self._painted("sprockets", running_gear.sprocket(measures), now.sprockets),
+            "shoes": self._painted("shoes", running_gear.track_shoe(measures), now.shoes),
         }
-        self._road_arms = self._plain("road_arms", running_gear.road_arm(layout), now.road_arms)
+        self._road_arms = self._plain("road_arms", running_gear.road_arm(measures), now.road_arms)
         self._batches["road_arms"] = self._road_arms
         self._imaginary_arms: viser.BatchedMeshHandle | None = None
         if system.m:
-            disc, rod = running_gear.imaginary_wheel(layout), running_gear.imaginary_arm(layout)
+            disc, rod = running_gear.imaginary_wheel(measures), running_gear.imaginary_arm(measures)
             stretch = np.ones((len(SIDES) * system.m, 3))
-            stretch[:, 0] = np.tile(layout.links, len(SIDES))
+            stretch[:, 0] = np.tile(measures.links, len(SIDES))
             self._batches["imaginary_wheels"] = self._painted("imaginary_wheels", disc, now.imaginary_wheels)
             self._imaginary_arms = self._plain("imaginary_arms", rod, now.imaginary_arms, stretch)
             self._batches["imaginary_arms"] = self._imaginary_arms
-        s = layout.scale
+        s = measures.scale
         self._arrows = api.add_arrows(
             f"{VEHICLE}/arrows",
             now.arrows,
@@ -89,27 +89,26 @@ class VehicleNodes:
 
     def colour(self, palette: Palette) -> None:
         """Give arms and arrows their wheels' colours."""
-        self._road_arms.batched_colors = _on_both_sides(palette.road)
+        self._road_arms.batched_colors = on_both_sides(palette.road)
         if self._imaginary_arms is not None:
-            self._imaginary_arms.batched_colors = _on_both_sides(palette.imaginary)
-        self._arrows.colors = _on_both_sides(palette.wheels)
+            self._imaginary_arms.batched_colors = on_both_sides(palette.imaginary)
+        self._arrows.colors = on_both_sides(palette.wheels)
 
     def draw(self, scene: Scene, now: Snapshot) -> None:
         """Bring everything that is visible to where it is now."""
         for name, node in self._batches.items():
-            if node.visible:
-                poses: Poses = getattr(now, name)
-                update(node, batched_positions=poses.positions, batched_wxyzs=poses.wxyzs)
+            poses: Poses = getattr(now, name)
+            update(node, batched_positions=poses.positions, batched_wxyzs=poses.wxyzs)
         update(self._shadow, vertices=now.shadow)
         if self._arrows.visible:
             update(self._arrows, points=now.arrows)
 
-    def show(self, *, hull: bool, arrows: bool) -> None:
-        self._batches["hull"].visible = hull
-        self._arrows.visible = arrows
+    def show(self, on: Mapping[str, bool]) -> None:
+        """Take over which switches are on."""
+        self._arrows.visible = on["arrows"]
 
     def on_click(self, act: Callable[[int], None]) -> None:
-        """Call act(wheel), which must not block, when the user clicks a wheel; counted as in a run's arrays."""
+        """Call act(wheel), which must not block, when the user clicks a wheel; numbered as in a run's arrays."""
 
         def pick(batch: str, first: int, count: int, of_side: int) -> None:
             async def picked(event: Any) -> None:
@@ -138,7 +137,7 @@ class VehicleNodes:
     def _plain(
         self, name: str, parts: list[Part], poses: Poses, sizes: np.ndarray | None = None
     ) -> viser.BatchedMeshHandle:
-        """Instances of a mesh that are to have a colour each."""
+        """Instances of a mesh, each of which has a colour of its own."""
         return self._api.add_batched_meshes_simple(
             f"{VEHICLE}/{name}", *joined(parts), poses.wxyzs, poses.positions, batched_scales=sizes, lod="off"
         )
@@ -151,9 +150,9 @@ class RoadNodes:
     the vehicle's poses, and wheels would not stand on the road.
     """
 
-    def __init__(self, api: viser.SceneApi, layout: Layout) -> None:
-        reach = (layout.front - layout.rear) / 2 + 1.8 * layout.scale
-        self._strip = RoadStrip(reach, layout.road_half_width)
+    def __init__(self, api: viser.SceneApi, measures: Measures) -> None:
+        reach = (measures.front - measures.rear) / 2 + 1.8 * measures.scale
+        self._strip = RoadStrip(reach, measures.road_half_width)
         self._shown: tuple[Profile, float, float] | None = None  # of the road; where the strip stands, its foot
         self._meshes: list[np.ndarray] = []  # of the tiles from there on, rounded
         self._shift = 0.0
@@ -221,6 +220,6 @@ class Surroundings:
         self._api.add_glb(name, glb([mesh], glow=GLOW), cast_shadow=False, receive_shadow=False)
 
 
-def _on_both_sides(colours: tuple[str, ...]) -> np.ndarray:
-    """CSS colours of W wheels as amounts of light (2 W, 3)."""
+def on_both_sides(colours: tuple[str, ...]) -> np.ndarray:
+    """CSS colours of W wheels as amounts of light (2 W, 3), for both sides of the vehicle."""
     return np.tile(light(np.array([rgb(colour) for colour in colours])), (len(SIDES), 1))

@@ -1,70 +1,112 @@
-"""What may be drawn over the vehicle: tractions, static loads, wheels in the air, loads as colours, travel, scales."""
+"""What the user may switch on and off in the 3-D view (SWITCHES), and what most of it shows: drawings over the vehicle.
+
+To add a switch, write what it shows here, and a row of SWITCHES: the panel makes its checkbox of that, and the view
+takes from there whether it is on at first.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import NamedTuple, Protocol
 
 import numpy as np
 import viser
 
-from app.format.colours import Palette, Theme, rgb
+from app.format.colours import Palette, Theme
 from app.format.load_colours import load_colours
 from app.view3d.labels import BELOW
-from app.view3d.meshes.layout import Layout
+from app.view3d.meshes.measures import Measures
 from app.view3d.meshes.solids import lathe, light
-from app.view3d.nodes import Frame, paint, update
+from app.view3d.nodes import Frame, on_both_sides, paint, update
 from app.view3d.snapshot import SIDES, Poses, Scene, Snapshot
 
 IN_AIR = (255, 42, 42)  # of the ring around a wheel that has left the ground
-TICK = 0.10  # m, half the length of a static load's mark, at the size of the paper's vehicle
+TICK = 0.10  # m, half the length of a static load's tick, at the size of the paper's vehicle
 FLANGE = 0.05  # m, half the length of a travel bar's end marks
 BESIDE = 0.13  # m from a wheel's centre back to its travel bar
-LINE = 0.022  # m, thickness of marks
+LINE = 0.022  # m, thickness of lines
 RING = 0.80  # inner radius of a wheel's ring, times its outer
 TRACTION_SCALE = 5.0  # times as long per newton as the loads' arrows: tractions are so much smaller
 LEAST_TRACTION = 0.01  # m of arrow: shorter ones are not drawn
 GRID_WIDTH, GRID_HEIGHT = 30.0, 4.0  # m, half of the height is below the road
-DEFAULTS = {
-    "traction": False,
-    "static_load": True,
-    "in_air": True,
-    "load_colours": False,
-    "travel": False,
-    "grid": False,
-    "scale_bar": True,
-}  # part -> whether it is shown at first
+OVERLAYS = "/overlays"  # the node above all of them
 
 
-def _amounts(colours: np.ndarray) -> np.ndarray:
-    """sRGB 0…255 as amounts of light 0…255."""
-    return np.round(255 * light(colours)).astype(np.uint8)
+class Overlay(Protocol):
+    """Something drawn over one vehicle in a viser scene."""
+
+    def show(self, on: Mapping[str, bool]) -> None:
+        """Take over which switches are on, by their names in SWITCHES."""
+
+    def colour(self, theme: Theme, palette: Palette) -> None: ...
+
+    def draw(self, scene: Scene, now: Snapshot) -> None:
+        """Bring it to where it is now, if it is shown."""
 
 
-_IN_AIR_AMOUNTS = _amounts(np.array(IN_AIR))
+class MovingLines:
+    """Lines that move with the vehicle, shown by the switch of the same name."""
+
+    def __init__(
+        self,
+        name: str,
+        points: Callable[[Scene, Snapshot], np.ndarray],
+        api: viser.SceneApi,
+        scene: Scene,
+        now: Snapshot,
+    ) -> None:
+        """points: (K, 2, 3) both ends of each line, in the view's frame, m."""
+        self._name, self._points = name, points
+        self._lines = _lines(api, name, points(scene, now), scene.measures.scale)
+
+    def show(self, on: Mapping[str, bool]) -> None:
+        self._lines.visible = on[self._name]
+
+    def colour(self, theme: Theme, palette: Palette) -> None:
+        paint(self._lines, theme.overlays)
+
+    def draw(self, scene: Scene, now: Snapshot) -> None:
+        if self._lines.visible:
+            update(self._lines, points=self._points(scene, now))
 
 
-class Marks:
-    """The marks of one vehicle in a viser scene."""
+class TractionArrows:
+    """Arrows in the wheels' colours."""
 
-    def __init__(self, api: viser.SceneApi, scene: Scene, now: Snapshot, shown: dict[str, bool]) -> None:
-        """shown: by part, as in DEFAULTS."""
-        layout, s = scene.layout, scene.layout.scale
-        self._shown = shown
-        self._node = api.add_frame("/marks", show_axes=False)
-        self._traction = api.add_arrows(
-            "/marks/traction",
+    def __init__(self, api: viser.SceneApi, scene: Scene, now: Snapshot) -> None:
+        s = scene.measures.scale
+        self._arrows = api.add_arrows(
+            f"{OVERLAYS}/traction",
             traction_arrows(scene, now),
             (0, 0, 0),
             shaft_radius=0.018 * s,
             head_radius=0.045 * s,
             head_length=0.09 * s,
         )
-        self._static = _lines(api, "static_load", static_marks(scene, now), s)
-        self._travel = _lines(api, "travel", travel_bars(scene, now), s)
-        ring = lathe([(layout.radius, 0.008 * s), (layout.radius, -0.008 * s), (RING * layout.radius, -0.008 * s)],
-                     (0, 0, 0, 255))  # fmt: skip
+
+    def show(self, on: Mapping[str, bool]) -> None:
+        self._arrows.visible = on["traction"]
+
+    def colour(self, theme: Theme, palette: Palette) -> None:
+        self._arrows.colors = on_both_sides(palette.wheels)
+
+    def draw(self, scene: Scene, now: Snapshot) -> None:
+        if self._arrows.visible:
+            update(self._arrows, points=traction_arrows(scene, now))
+
+
+class WheelRings:
+    """Rings that say which wheels are in the air, or how much each one carries."""
+
+    def __init__(self, api: viser.SceneApi, scene: Scene, now: Snapshot) -> None:
+        R, s = scene.measures.radius, scene.measures.scale
+        ring = lathe([(R, 0.008 * s), (R, -0.008 * s), (RING * R, -0.008 * s)], (0, 0, 0, 255))
         places = ring_places(scene, now)
-        self._ringed = True  # some wheel has a ring
+        self._in_air = self._coloured = False
+        self._any = True  # some wheel has a ring
         self._rings = api.add_batched_meshes_simple(
-            "/marks/rings",
+            f"{OVERLAYS}/rings",
             ring.vertices,
             ring.faces,
             places.wxyzs,
@@ -73,60 +115,21 @@ class Marks:
             lod="off",
             cast_shadow=False,
         )
-        self._grid_frame, self._scale_frame = Frame(api, "/marks/grid"), Frame(api, "/marks/scale_bar")
-        self._grid = self._make_grid(api, layout)
-        bar = scale_bar(layout)
-        self._bar = _lines(api, "scale_bar/line", bar, s)
-        middle = bar[0].mean(axis=0)
-        api.add_label(
-            "/marks/scale_bar/name",
-            f"{bar_length(layout):g} m",
-            position=(float(middle[0]), float(middle[1]), float(middle[2]) - 0.04 * s),
-            anchor="top-center",
-        )
-        self.show()
 
-    def _make_grid(self, api: viser.SceneApi, layout: Layout) -> viser.GridHandle:
-        return api.add_grid(
-            "/marks/grid/lines",
-            width=GRID_WIDTH,
-            height=2 * GRID_HEIGHT,
-            plane="xz",
-            cell_size=0.5,
-            section_size=1.0,
-            cell_thickness=0.6,
-            position=(0.0, layout.road_half_width, 0.0),
-        )
+    def show(self, on: Mapping[str, bool]) -> None:
+        self._in_air, self._coloured = on["in_air"], on["load_colours"]
+        self._rings.visible = self._in_air or self._coloured
 
     def colour(self, theme: Theme, palette: Palette) -> None:
-        self._traction.colors = np.tile(light(np.array([rgb(c) for c in palette.wheels])), (len(SIDES), 1))
-        for lines in (self._static, self._travel, self._bar):
-            paint(lines, theme.marks)
-        self._grid.section_color = self._grid.cell_color = theme.grid
-
-    def show(self) -> None:
-        """Take over which parts are shown."""
-        self._traction.visible = self._shown["traction"]
-        self._static.visible = self._shown["static_load"]
-        self._travel.visible = self._shown["travel"]
-        self._rings.visible = self._shown["in_air"] or self._shown["load_colours"]
-        self._grid_frame.node.visible = self._shown["grid"]
-        self._scale_frame.node.visible = self._shown["scale_bar"]
+        """Nothing: their colours say something."""
 
     def draw(self, scene: Scene, now: Snapshot) -> None:
-        """Bring what is visible to where it is now."""
-        shown, x = self._shown, now.x - now.origin
-        if shown["traction"]:
-            update(self._traction, points=traction_arrows(scene, now))
-        if shown["static_load"]:
-            update(self._static, points=static_marks(scene, now))
-        if shown["travel"]:
-            update(self._travel, points=travel_bars(scene, now))
-        ringed = shown["load_colours"] or (shown["in_air"] and bool((now.contacts.load <= 0.0).any()))
-        if self._rings.visible and (ringed or self._ringed):
-            self._ringed = ringed
+        """While no wheel has a ring nothing is sent."""
+        needed = self._coloured or (self._in_air and bool((now.contacts.load <= 0.0).any()))
+        if self._rings.visible and (needed or self._any):
+            self._any = needed
             places = ring_places(scene, now)
-            colours, sizes = ring_looks(scene, now, shown["in_air"], shown["load_colours"])
+            colours, sizes = ring_looks(scene, now, self._in_air, self._coloured)
             update(
                 self._rings,
                 batched_positions=places.positions,
@@ -134,10 +137,84 @@ class Marks:
                 batched_colors=colours,
                 batched_scales=sizes,
             )
-        if shown["grid"]:
-            self._grid_frame.move(x - (now.x + scene.passed) % 1.0)
-        if shown["scale_bar"]:
-            self._scale_frame.move(x, scene.lowest - BELOW * scene.layout.scale)
+
+
+class Grid:
+    """A wall of squares behind the vehicle."""
+
+    def __init__(self, api: viser.SceneApi, scene: Scene, now: Snapshot) -> None:
+        self._frame = Frame(api, f"{OVERLAYS}/grid")
+        self._grid = api.add_grid(
+            f"{OVERLAYS}/grid/lines",
+            width=GRID_WIDTH,
+            height=2 * GRID_HEIGHT,
+            plane="xz",
+            cell_size=0.5,
+            section_size=1.0,
+            cell_thickness=0.6,
+            position=(0.0, scene.measures.road_half_width, 0.0),
+        )
+
+    def show(self, on: Mapping[str, bool]) -> None:
+        self._frame.node.visible = on["grid"]
+
+    def colour(self, theme: Theme, palette: Palette) -> None:
+        self._grid.section_color = self._grid.cell_color = theme.grid
+
+    def draw(self, scene: Scene, now: Snapshot) -> None:
+        """It stays with the vehicle, but its lines stay with the road."""
+        if self._frame.node.visible:
+            self._frame.move(now.x - now.origin - (now.x + scene.passed) % 1.0)
+
+
+class ScaleBar:
+    """A bar of a round length, with its length below it."""
+
+    def __init__(self, api: viser.SceneApi, scene: Scene, now: Snapshot) -> None:
+        measures, s = scene.measures, scene.measures.scale
+        self._frame = Frame(api, f"{OVERLAYS}/scale_bar")
+        bar = scale_bar(measures)
+        self._bar = _lines(api, "scale_bar/line", bar, s)
+        middle = bar[0].mean(axis=0)
+        api.add_label(
+            f"{OVERLAYS}/scale_bar/name",
+            f"{bar_length(measures):g} m",
+            position=(float(middle[0]), float(middle[1]), float(middle[2]) - 0.04 * s),
+            anchor="top-center",
+        )
+
+    def show(self, on: Mapping[str, bool]) -> None:
+        self._frame.node.visible = on["scale_bar"]
+
+    def colour(self, theme: Theme, palette: Palette) -> None:
+        paint(self._bar, theme.overlays)
+
+    def draw(self, scene: Scene, now: Snapshot) -> None:
+        if self._frame.node.visible:
+            self._frame.move(now.x - now.origin, scene.lowest - BELOW * scene.measures.scale)
+
+
+class Overlays:
+    """All overlays of one vehicle."""
+
+    def __init__(self, api: viser.SceneApi, scene: Scene, now: Snapshot) -> None:
+        self._node = api.add_frame(OVERLAYS, show_axes=False)
+        makers = dict.fromkeys(switch.overlay for switch in SWITCHES.values() if switch.overlay is not None)
+        self._all = [make(api, scene, now) for make in makers]
+
+    def show(self, on: Mapping[str, bool]) -> None:
+        """Take over which switches are on."""
+        for overlay in self._all:
+            overlay.show(on)
+
+    def colour(self, theme: Theme, palette: Palette) -> None:
+        for overlay in self._all:
+            overlay.colour(theme, palette)
+
+    def draw(self, scene: Scene, now: Snapshot) -> None:
+        """Bring what is shown to where it is now."""
+        for overlay in self._all:
+            overlay.draw(scene, now)
 
     def remove(self) -> None:
         self._node.remove()
@@ -149,26 +226,26 @@ def traction_arrows(scene: Scene, now: Snapshot) -> np.ndarray:
     length = touch.traction * (TRACTION_SCALE * touch.per_newton)
     length = np.where(np.abs(length) < LEAST_TRACTION, 0.0, length)
     ahead = np.column_stack([touch.normals[:, 1], -touch.normals[:, 0]])
-    return _aside(touch.points, touch.points + length[:, None] * ahead, scene.layout.arrow)
+    return _aside(touch.points, touch.points + length[:, None] * ahead, scene.measures.arrow)
 
 
-def static_marks(scene: Scene, now: Snapshot) -> np.ndarray:
+def static_ticks(scene: Scene, now: Snapshot) -> np.ndarray:
     """(2 W, 2, 3) a tick across each load's arrow where its tip is at rest on flat ground."""
     touch = now.contacts
     tip = touch.points + (scene.trajectory.static_load * touch.per_newton)[:, None] * touch.normals
-    across = TICK * scene.layout.scale * np.column_stack([touch.normals[:, 1], -touch.normals[:, 0]])
-    return _aside(tip - across, tip + across, scene.layout.arrow + 0.03 * scene.layout.scale)
+    across = TICK * scene.measures.scale * np.column_stack([touch.normals[:, 1], -touch.normals[:, 0]])
+    return _aside(tip - across, tip + across, scene.measures.arrow + 0.03 * scene.measures.scale)
 
 
 def ring_places(scene: Scene, now: Snapshot) -> Poses:
     """Of 2 W rings in front of all wheels' faces, the right side's first."""
-    n, layout = scene.system.n, scene.layout
+    n, measures = scene.system.n, scene.measures
     road, imaginary = now.road_wheels, now.imaginary_wheels
     positions, wxyzs = [], []
     for k, side in enumerate(SIDES):
         wheels = slice(k * (n + 1), k * (n + 1) + n)
         discs = slice(k * scene.system.m, (k + 1) * scene.system.m)
-        for batch, rows, y in ((road, wheels, layout.disc - 0.03), (imaginary, discs, layout.disc + 0.03)):
+        for batch, rows, y in ((road, wheels, measures.disc - 0.03), (imaginary, discs, measures.disc + 0.03)):
             there = batch.positions[rows].copy()
             there[:, 1] = side * y
             positions.append(there)
@@ -180,7 +257,7 @@ def ring_looks(scene: Scene, now: Snapshot, in_air: bool, coloured: bool) -> tup
     """Colours (2 W, 3), 0…255 of light, and sizes (2 W,) of the rings; size 0 where there is nothing to say."""
     load = now.contacts.load
     flying = load <= 0.0
-    amounts = np.full((len(load), 3), _IN_AIR_AMOUNTS)
+    amounts = np.full((len(load), 3), _amounts(np.array(IN_AIR)))
     if coloured:
         told = ~(flying & in_air)
         amounts[told] = _amounts(load_colours(load[told] / scene.load_top)[:, :3])
@@ -191,7 +268,7 @@ def ring_looks(scene: Scene, now: Snapshot, in_air: bool, coloured: bool) -> tup
 def travel_bars(scene: Scene, now: Snapshot) -> np.ndarray:
     """(2 · 5 n, 2, 3) beside each road wheel: where its centre has been, with both ends; at rest; and where it is."""
     low, high, rest = scene.travel
-    s, (x, _, z), wxyz = scene.layout.scale, now.hull.positions[0], now.hull.wxyzs[0]
+    s, (x, _, z), wxyz = scene.measures.scale, now.hull.positions[0], now.hull.wxyzs[0]
     foot, turn = complex(x, z), complex(wxyz[0], -wxyz[2]) ** 2
     wheels = now.road_wheels.positions[: scene.system.n]
     centre = (wheels[:, 0] + 1j * wheels[:, 2] - foot) / turn
@@ -201,20 +278,20 @@ def travel_bars(scene: Scene, now: Snapshot) -> np.ndarray:
     ends = np.array([(bar + 1j * low, bar + 1j * high), *level])  # (5, 2, n)
     turned = foot + ends * turn
     from_, to = (np.column_stack([e.real.ravel(), e.imag.ravel()]) for e in (turned[:, 0], turned[:, 1]))
-    return _aside(from_, to, scene.layout.arrow + 0.05 * s)
+    return _aside(from_, to, scene.measures.arrow + 0.05 * s)
 
 
-def bar_length(layout: Layout) -> float:
+def bar_length(measures: Measures) -> float:
     """m: as much as goes three times between the first wheel and the last."""
-    room = (layout.front - layout.rear) / 3
+    room = (measures.front - measures.rear) / 3
     return next((length for length in (1.0, 0.5, 0.2, 0.1) if length <= room), 0.05)
 
 
-def scale_bar(layout: Layout) -> np.ndarray:
+def scale_bar(measures: Measures) -> np.ndarray:
     """(3, 2, 3) a bar of round length with its ends, under the rear of the vehicle."""
-    s = layout.scale
-    a = np.array([layout.idler.x - 0.6 * s, -layout.road_half_width - 0.02 * s, -0.1 * s])
-    b, up = a + np.array([bar_length(layout), 0.0, 0.0]), np.array([0.0, 0.0, 0.06 * s])
+    s = measures.scale
+    a = np.array([measures.idler.x - 0.6 * s, -measures.road_half_width - 0.02 * s, -0.1 * s])
+    b, up = a + np.array([bar_length(measures), 0.0, 0.0]), np.array([0.0, 0.0, 0.06 * s])
     return np.array([[a, b], [a - up, a + up], [b - up, b + up]], dtype=np.float32)
 
 
@@ -227,4 +304,64 @@ def _aside(start: np.ndarray, end: np.ndarray, aside: float) -> np.ndarray:
 
 
 def _lines(api: viser.SceneApi, name: str, points: np.ndarray, scale: float) -> viser.LineSegmentsHandle:
-    return api.add_line_segments(f"/marks/{name}", points, (0, 0, 0), thickness=LINE * scale)
+    return api.add_line_segments(f"{OVERLAYS}/{name}", points, (0, 0, 0), thickness=LINE * scale)
+
+
+def _amounts(colours: np.ndarray) -> np.ndarray:
+    """sRGB 0…255 as amounts of light 0…255."""
+    return np.round(255 * light(colours)).astype(np.uint8)
+
+
+class Switch(NamedTuple):
+    """Something that the user may switch on and off."""
+
+    label: str
+    on: bool  # at first
+    hint: str
+    overlay: Callable[[viser.SceneApi, Scene, Snapshot], Overlay] | None = None  # None: part of the vehicle or the view
+
+
+SWITCHES = {
+    "follow": Switch(
+        "Follow vehicle", True, "The camera goes along with the vehicle (F); off: the vehicle drives past"
+    ),
+    "arrows": Switch(
+        "Load arrows", True, "On each contact point, as high as the normal load f_n is large; none: in the air"
+    ),
+    "static_load": Switch(
+        "Static loads",
+        True,
+        "A tick across each arrow: how high it is at rest on flat ground",
+        partial(MovingLines, "static_load", static_ticks),
+    ),
+    "traction": Switch(
+        "Traction arrows",
+        False,
+        f"Force f_t along the road, drawn {TRACTION_SCALE:g} times as long as a load of that size; forward: it drives",
+        TractionArrows,
+    ),
+    "in_air": Switch("Wheels in the air", True, "A red ring around each wheel that has left the ground", WheelRings),
+    "load_colours": Switch(
+        "Load colours",
+        False,
+        "A ring on each wheel in the colour of its normal load f_n; the scale appears below",
+        WheelRings,
+    ),
+    "travel": Switch(
+        "Travel",
+        False,
+        "A bar beside each road wheel: how far it moves up and down in the hull; long mark: at rest",
+        partial(MovingLines, "travel", travel_bars),
+    ),
+    "names": Switch(
+        "Wheel names", True, "R1… are road wheels, I1… imaginary wheels, front first. Click a wheel for all its figures"
+    ),
+    "loads": Switch("Loads in figures", False, "The normal load f_n under each wheel's name"),
+    "scale_bar": Switch("Scale bar", True, "A round length, under the rear of the vehicle", ScaleBar),
+    "grid": Switch(
+        "Grid",
+        False,
+        "Lines every half metre and metre on a wall behind the vehicle; heights from level ground",
+        Grid,
+    ),
+}  # by name

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.view3d.meshes.layout import Layout, layout_of
+from app.view3d.meshes.measures import Measures, measures_of
 from app.view3d.meshes.surroundings import AHEAD, BEHIND, TILES, shadow
 from app.view3d.track_belt import ARC, points_along, track_path
 from model.dynamics.vehicle import System
@@ -112,7 +112,7 @@ class Scene:
 
     trajectory: Trajectory
     system: System
-    layout: Layout
+    measures: Measures
     places: Places
     ground: GroundLine
     passed: float = 0.0  # m by which the origin of a drive has moved along
@@ -122,7 +122,7 @@ class Scene:
     def load_scale(self) -> float:
         """m of arrow per N: an even share of the weight on each road wheel is as high as the wheel."""
         weight = float(self.system.weight.sum())
-        return 2 * self.layout.radius * self.system.n / weight
+        return 2 * self.measures.radius * self.system.n / weight
 
     @cached_property
     def lowest(self) -> float:
@@ -131,13 +131,13 @@ class Scene:
         Rounded down to 5 cm (but for 5 mm; less for small vehicles), so that it stays the same for runs that differ
         little.
         """
-        grain = 0.05 * min(self.layout.scale, 1.0)
+        grain = 0.05 * min(self.measures.scale, 1.0)
         return grain * float(np.floor(self.ground.heights.min() / grain + 0.1))
 
     @cached_property
     def load_top(self) -> float:
         """N: the end of the colour scale of loads, twice an even share of the weight on each road wheel."""
-        return 4 * self.layout.radius / self.load_scale
+        return 4 * self.measures.radius / self.load_scale
 
     @cached_property
     def travel(self) -> Travel:
@@ -214,37 +214,37 @@ class Scene:
 class Places:
     """What is drawn where in the arrays of a snapshot: the same for every instant and every run of a vehicle."""
 
-    def __init__(self, system: System, layout: Layout) -> None:
+    def __init__(self, system: System, measures: Measures) -> None:
         bodies = np.arange(len(system.mass))
         foot, sprocket, idler = len(bodies) + np.arange(3)
-        rollers = idler + 1 + np.arange(len(layout.rollers))
+        rollers = idler + 1 + np.arange(len(measures.rollers))
 
         # Fixed to the hull, from its centre of mass; radians that they turn per m of track
-        ends = layout.sprocket, layout.idler
-        fixed = np.array([(0.0, 0.0), *(circle[:2] for circle in (*ends, *layout.rollers))])
+        ends = measures.sprocket, measures.idler
+        fixed = np.array([(0.0, 0.0), *(circle[:2] for circle in (*ends, *measures.rollers))])
         self.on_hull = fixed @ [1, 1j] - system.q_design[system.chassis, :2] @ [1, 1j]
         self.turns = np.array([0.0, *(1 / end.radius for end in ends), *np.zeros(len(rollers))])
 
         # The track's circles, clockwise from the sprocket: under the wheels, round the idler, over the rollers
         wheels = system.wheel[np.argsort(-system.q_design[system.wheel, 0])]
         self.circled = np.concatenate([[sprocket], wheels, [idler], rollers])
-        around = [layout.sprocket.radius, *np.full(len(wheels), layout.radius), layout.idler.radius]
-        self.radii = np.array([*around, *(roller.radius for roller in layout.rollers)])
+        around = [measures.sprocket.radius, *np.full(len(wheels), measures.radius), measures.idler.radius]
+        self.radii = np.array([*around, *(roller.radius for roller in measures.rollers)])
         self.under_middle = (1 + len(wheels) // 2) * len(ARC) + len(ARC) // 2
-        self.middle, self.shoe_pitch = layout.middle, layout.shoe_pitch
+        self.middle, self.shoe_pitch = measures.middle, measures.shoe_pitch
         design = np.concatenate([system.q_design[:, :2] @ [1, 1j], fixed @ [1, 1j]])
         path = track_path(design[self.circled], self.radii)
-        self.shoe_count = round(float(np.abs(np.roll(path, -1) - path).sum()) / layout.shoe_pitch)
+        self.shoe_count = round(float(np.abs(np.roll(path, -1) - path).sum()) / measures.shoe_pitch)
 
         # Rows of a snapshot's bodies: which body, how far to the left, and whether turned about z
         rows = {
             "hull": (np.array([foot]), np.zeros(1)),
-            "road_wheels": (np.append(bodies[system.road_wheels], idler), SIDES * layout.track),
-            "sprockets": (np.array([sprocket]), SIDES * layout.track),
-            "imaginary_wheels": (bodies[system.imaginary_wheels], SIDES * layout.disc),
-            "road_arms": (bodies[system.road_arms], SIDES * layout.arm),
-            "imaginary_arms": (bodies[system.imaginary_arms], SIDES * layout.link),
-            "shoes": (np.arange(self.shoe_count), SIDES * layout.track),
+            "road_wheels": (np.append(bodies[system.road_wheels], idler), SIDES * measures.track),
+            "sprockets": (np.array([sprocket]), SIDES * measures.track),
+            "imaginary_wheels": (bodies[system.imaginary_wheels], SIDES * measures.disc),
+            "road_arms": (bodies[system.road_arms], SIDES * measures.arm),
+            "imaginary_arms": (bodies[system.imaginary_arms], SIDES * measures.link),
+            "shoes": (np.arange(self.shoe_count), SIDES * measures.track),
         }
         edges = pairwise(np.cumsum([0, *(len(row) * len(sides) for row, sides in rows.values())]))
         self._rows = {name: slice(*ends) for name, ends in zip(rows, edges, strict=True)}
@@ -259,8 +259,8 @@ class Places:
         self._cosine, self._sine = start + np.where(turned, 3, 0), start + np.where(turned, 1, 2)
 
         self.arrows = np.zeros((len(SIDES), len(system.wheel), 2, 3), dtype=np.float32)
-        self.arrows[..., 1] = (SIDES * layout.arrow)[:, None, None]
-        self.shadow = shadow(layout).astype(np.float32)
+        self.arrows[..., 1] = (SIDES * measures.arrow)[:, None, None]
+        self.shadow = shadow(measures).astype(np.float32)
 
     def pins(self, path: np.ndarray, travelled: float, origin: float) -> np.ndarray:
         """Pins (shoes + 1,) of the track along its closed path (K,); those below stay where they are on the road."""
@@ -281,14 +281,14 @@ class Places:
 def build_scene(trajectory: Trajectory, like: Scene | None = None) -> Scene:
     """The scene of a run; takes over what it shares with another one, which makes it cheap."""
     system, config = trajectory.system, trajectory.config
-    layout = layout_of(system, config.vehicle.hull)
+    measures = measures_of(system, config.vehicle.hull)
     x = trajectory.q[:, system.chassis, 0]
     first, last = float(x.min()) - BEHIND - TILES, float(x.max()) + AHEAD + TILES
-    if like is None or like.layout != layout:
+    if like is None or like.measures != measures:
         ground = GroundLine.along(trajectory.road, first, last)
-        return Scene(trajectory, system, layout, Places(system, layout), ground)
+        return Scene(trajectory, system, measures, Places(system, measures), ground)
     ground = GroundLine.along(trajectory.road, first, last, like.ground)
-    return Scene(trajectory, system, layout, like.places, ground)
+    return Scene(trajectory, system, measures, like.places, ground)
 
 
 def live_scene(recent: Trajectory, road: Road, like: Scene | None = None) -> Scene:
@@ -299,14 +299,14 @@ def live_scene(recent: Trajectory, road: Road, like: Scene | None = None) -> Sce
     x = float(recent.q[-1, 0, 0])
     ground = GroundLine.of_laid(road, like.ground if like else None)
     if like is None:
-        layout = layout_of(recent.system, recent.config.vehicle.hull)
-        return Scene(recent, recent.system, layout, Places(recent.system, layout), ground)
+        measures = measures_of(recent.system, recent.config.vehicle.hull)
+        return Scene(recent, recent.system, measures, Places(recent.system, measures), ground)
     fell_back = like.trajectory.q[-1, 0, 0] - x
     passed = like.passed + REBASE * round(fell_back / REBASE)
-    system, layout, places = like.system, like.layout, like.places
+    system, measures, places = like.system, like.measures, like.places
     if like.trajectory.config is not recent.config:
-        system, layout = recent.system, layout_of(recent.system, recent.config.vehicle.hull)
-    if layout != like.layout:
-        return Scene(recent, system, layout, Places(system, layout), ground, passed)
+        system, measures = recent.system, measures_of(recent.system, recent.config.vehicle.hull)
+    if measures != like.measures:
+        return Scene(recent, system, measures, Places(system, measures), ground, passed)
     before = like.travel if recent.t[0] > like.trajectory.t[0] else None
-    return Scene(recent, system, layout, places, ground, passed, before)
+    return Scene(recent, system, measures, places, ground, passed, before)

@@ -7,55 +7,45 @@ touched, and the user's own orbit and zoom stay. Frame of the view: x forward, y
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
-from app.format.colours import DARK, LIGHT, wheel_palette
+from app.format.colours import DARK, LIGHT, Theme, wheel_palette
 from app.format.load_unit import load_unit
-from app.view3d.camera import Camera, Tab, View
+from app.view3d.camera import Camera, Standpoint, Tab
 from app.view3d.ghost import Ghost
 from app.view3d.labels import WheelLabels
 from app.view3d.nodes import RoadNodes, Surroundings, VehicleNodes
-from app.view3d.overlays import DEFAULTS, Marks
+from app.view3d.overlays import SWITCHES, Overlays
 from app.view3d.snapshot import Scene, build_scene, live_scene
 from model.analysis.ride import WheelState, wheel_state
 from model.road.road import Road
 from model.simulation.trajectory import Trajectory
 
 
-class _Mark:
-    """Whether a part of the marks, named `show_` and the part, is shown."""
+class _Nodes(NamedTuple):
+    """What is made anew for a vehicle of another shape."""
 
-    def __set_name__(self, owner: type, name: str) -> None:
-        self._part = name.removeprefix("show_")
-
-    def __get__(self, stage: Stage, owner: type) -> bool:
-        return stage._marked[self._part]
-
-    def __set__(self, stage: Stage, on: bool) -> None:
-        stage._switch_mark(self._part, on)
+    vehicle: VehicleNodes
+    labels: WheelLabels  # below the vehicle's node: they go when it goes
+    road: RoadNodes
+    overlays: Overlays
 
 
-class Stage:
+class View3D:
     """What one tab sees. For one thread; switches take effect at once, also while nothing else is drawn."""
 
     def __init__(self, client: Tab, dark: bool = False) -> None:
         self._client = client
         self._dark = dark
-        self._follow = True
+        self._on = {name: switch.on for name, switch in SWITCHES.items()}
         self._arrow_scale = 1.0
-        self._show_surroundings = True
-        self._visible = {"hull": True, "arrows": True}
-        self._labelled = {"names": True, "loads": False}
         self._camera = Camera(client)
-        self._surroundings = Surroundings(client.scene, DARK if dark else LIGHT)
+        self._surroundings = Surroundings(client.scene, self._theme)
         self._scene: Scene | None = None
-        self._vehicle: VehicleNodes | None = None
-        self._labels: WheelLabels | None = None
-        self._road: RoadNodes | None = None
-        self._time = 0.0
-        self._marks: Marks | None = None
-        self._marked = dict(DEFAULTS)
-        self._picked: Callable[[int], None] = lambda wheel: None
+        self._nodes: _Nodes | None = None
         self._ghost: Ghost | None = None
+        self._picked: Callable[[int], None] = lambda wheel: None
+        self._time = 0.0
         self._live = False  # a drive is shown, which has no time in common with a ghost
         self._origin = 0.0  # of the view along the road, m
         self._recentre = False  # bring the view to the vehicle once, though it does not follow
@@ -63,7 +53,7 @@ class Stage:
     def show(self, trajectory: Trajectory) -> None:
         """Take over a run for the next `draw`. Nodes are made anew only where their shape has changed.
 
-        A run that broke down before its first sample leaves the former one.
+        A run that broke down before its first sample leaves the one before it.
         """
         if not len(trajectory.t):
             return
@@ -90,74 +80,70 @@ class Stage:
         before = self._ghost.scene if self._ghost is not None else None
         scene = build_scene(trajectory, before) if trajectory is not None and len(trajectory.t) else None
         with self._client.atomic():
-            if self._ghost is not None and before is not None and scene is not None and scene.layout == before.layout:
+            if self._ghost is not None and scene is not None and self._ghost.scene.measures == scene.measures:
                 self._ghost.follow(scene)
             else:
-                if self._ghost is not None:
-                    self._ghost.remove()
-                self._ghost = Ghost(self._client.scene, scene, DARK if self._dark else LIGHT) if scene else None
-                if self._ghost is not None:
-                    self._ghost.show(not self._live)
+                self._replace_ghost(scene)
             self.draw(self._time)
 
     def draw(self, time: float) -> None:
         """Show the run at a time, s; a time outside of the run shows its start or its end."""
         self._time = time
-        scene, vehicle, road = self._scene, self._vehicle, self._road
-        if scene is None or vehicle is None or road is None:
+        scene, nodes = self._scene, self._nodes
+        if scene is None or nodes is None:
             return
-        follow = self._follow or self._recentre
+        follow = self._on["follow"] or self._recentre
         now = scene.at(time, self._arrow_scale, None if follow else self._origin)
         self._origin, self._recentre = now.origin, False
         with self._client.atomic():
-            vehicle.draw(scene, now)
-            road.draw(scene, now)
-            if self._labels is not None:
-                self._labels.move(now.x - now.origin, scene.lowest)
-            if self._marks is not None:
-                self._marks.draw(scene, now)
+            nodes.vehicle.draw(scene, now)
+            nodes.road.draw(scene, now)
+            nodes.labels.move(now.x - now.origin, scene.lowest)
+            nodes.overlays.draw(scene, now)
             if self._ghost is not None and not self._live:
                 self._ghost.draw(time, now.x - now.origin)
             self._surroundings.draw(scene, now)
 
-    def set_view(self, name: View) -> None:
+    def set_view(self, standpoint: Standpoint) -> None:
         """Look at the vehicle from one of the standpoints; before the first run there is nothing to look at."""
         if self._scene is not None:
             self._recentre = True
-            self._camera.look(name, self._scene.layout)
+            self._camera.look(standpoint, self._scene.measures)
 
     def set_dark(self, dark: bool) -> None:
         """Change between the light and the dark theme."""
         self._dark = dark
-        theme = DARK if dark else LIGHT
         with self._client.atomic():
-            self._surroundings.colour(theme)
+            self._surroundings.colour(self._theme)
             if self._ghost is not None:
-                self._ghost.colour(theme)
-            if self._scene is not None and self._vehicle is not None and self._road is not None:
-                palette = wheel_palette(self._scene.system.n, self._scene.system.m, dark)
-                self._vehicle.colour(palette)
-                self._road.colour(theme)
-                if self._marks is not None:
-                    self._marks.colour(theme, palette)
+                self._ghost.colour(self._theme)
+            self._colour_nodes()
 
     def on_pick(self, act: Callable[[int], None]) -> None:
         """Call act(wheel), which must not block, on the event loop when the user clicks a wheel (model's order)."""
         self._picked = act
 
-    show_traction = _Mark()
-    show_static_load = _Mark()
-    show_in_air = _Mark()
-    show_load_colours = _Mark()
-    show_travel = _Mark()
-    show_grid = _Mark()
-    show_scale_bar = _Mark()
+    def set_switch(self, name: str, on: bool) -> None:
+        """Turn one of app.view3d.overlays.SWITCHES on or off. Raises ValueError for another name."""
+        if name not in SWITCHES:
+            raise ValueError(f"Unknown switch of the 3-D view: {name!r}. Allowed: {', '.join(SWITCHES)}")
+        self._on[name] = on
+        self._show_what_is_on()
+        self.draw(self._time)
 
-    def _switch_mark(self, part: str, on: bool) -> None:
-        self._marked[part] = on
-        if self._marks is not None:
-            self._marks.show()
-            self.draw(self._time)
+    def set_arrow_scale(self, scale: float) -> None:
+        """Make all force arrows this many times as long as at first."""
+        self._arrow_scale = scale
+        self.draw(self._time)
+
+    def show_surroundings(self, on: bool) -> None:
+        """Show sky and ground, or hide them."""
+        self._surroundings.show(on)
+
+    def write_loads(self) -> None:
+        """Bring the loads at the wheels' names up to date: seldom enough to be read."""
+        if self._scene is not None and self._nodes is not None and self._on["loads"]:
+            self._nodes.labels.write(self._scene.loads(self._time), load_unit(self._scene.system))
 
     def wheel_state(self, wheel: int) -> WheelState | None:
         """A wheel, in the model's order, at the time drawn last; None where there is no such wheel."""
@@ -169,89 +155,32 @@ class Stage:
     @property
     def load_top(self) -> float | None:
         """N at the end of the colour scale while the wheels show their loads in colours; else None."""
-        return self._scene.load_top if self._scene is not None and self._marked["load_colours"] else None
+        return self._scene.load_top if self._scene is not None and self._on["load_colours"] else None
 
     @property
-    def follow(self) -> bool:
-        """Whether the camera goes with the vehicle."""
-        return self._follow
+    def _theme(self) -> Theme:
+        return DARK if self._dark else LIGHT
 
-    @follow.setter
-    def follow(self, on: bool) -> None:
-        self._follow = on
-        self.draw(self._time)
+    def _replace_ghost(self, scene: Scene | None) -> None:
+        if self._ghost is not None:
+            self._ghost.remove()
+        self._ghost = Ghost(self._client.scene, scene, self._theme) if scene is not None else None
+        if self._ghost is not None:
+            self._ghost.show(not self._live)
 
-    @property
-    def arrow_scale(self) -> float:
-        """Length of the load arrows, times the default."""
-        return self._arrow_scale
-
-    @arrow_scale.setter
-    def arrow_scale(self, scale: float) -> None:
-        self._arrow_scale = scale
-        self.draw(self._time)
-
-    @property
-    def show_surroundings(self) -> bool:
-        """Sky and ground."""
-        return self._show_surroundings
-
-    @show_surroundings.setter
-    def show_surroundings(self, on: bool) -> None:
-        self._show_surroundings = on
-        self._surroundings.show(on)
-
-    @property
-    def show_hull(self) -> bool:
-        return self._visible["hull"]
-
-    @show_hull.setter
-    def show_hull(self, on: bool) -> None:
-        self._switch("hull", on)
-
-    @property
-    def show_arrows(self) -> bool:
-        """Of the normal loads."""
-        return self._visible["arrows"]
-
-    @show_arrows.setter
-    def show_arrows(self, on: bool) -> None:
-        self._switch("arrows", on)
-
-    @property
-    def show_labels(self) -> bool:
-        """The wheels' names."""
-        return self._labelled["names"]
-
-    @show_labels.setter
-    def show_labels(self, on: bool) -> None:
-        self._label(names=on)
-
-    @property
-    def show_loads(self) -> bool:
-        """The normal loads at the wheels' names."""
-        return self._labelled["loads"]
-
-    @show_loads.setter
-    def show_loads(self, on: bool) -> None:
-        self._label(loads=on)
-
-    def write_loads(self) -> None:
-        """Bring the loads at the wheels' names up to date: seldom enough to be read."""
-        if self._scene is not None and self._labels is not None and self._labelled["loads"]:
-            self._labels.write(self._scene.loads(self._time), load_unit(self._scene.system))
-
-    def _label(self, **changed: bool) -> None:
-        self._labelled |= changed
-        if self._labels is not None:
-            self._labels.show(**self._labelled)
+    def _show_what_is_on(self) -> None:
+        if self._nodes is not None:
+            self._nodes.vehicle.show(self._on)
+            self._nodes.labels.show(self._on)
+            self._nodes.overlays.show(self._on)
             self.write_loads()
 
-    def _switch(self, what: str, on: bool) -> None:
-        self._visible[what] = on
-        if self._vehicle is not None:
-            self._vehicle.show(**self._visible)
-            self.draw(self._time)
+    def _colour_nodes(self) -> None:
+        if self._scene is not None and self._nodes is not None:
+            palette = wheel_palette(self._scene.system.n, self._scene.system.m, self._dark)
+            self._nodes.vehicle.colour(palette)
+            self._nodes.road.colour(self._theme)
+            self._nodes.overlays.colour(self._theme, palette)
 
     def _set_live(self, live: bool) -> None:
         if live != self._live:
@@ -261,30 +190,28 @@ class Stage:
 
     def _take(self, scene: Scene) -> None:
         before, self._scene = self._scene, scene
-        if before is None or before.layout != scene.layout:
+        if before is None or before.measures != scene.measures:
             with self._client.atomic():
                 self._build(scene)
         if before is None:
             self.set_view("side")
         else:
-            self._camera.fit(scene.layout)
+            self._camera.fit(scene.measures)
 
     def _build(self, scene: Scene) -> None:
-        """Make vehicle and road anew."""
-        if self._vehicle is not None and self._road is not None:
-            self._vehicle.remove()
-            self._road.remove()
-        if self._marks is not None:
-            self._marks.remove()
-        now = scene.at(self._time, self._arrow_scale, None if self._follow else self._origin)
-        self._vehicle = VehicleNodes(self._client.scene, scene, now)
-        palette = wheel_palette(scene.system.n, scene.system.m, self._dark)
-        self._vehicle.colour(palette)
-        self._vehicle.on_click(lambda wheel: self._picked(wheel))
-        self._marks = Marks(self._client.scene, scene, now, self._marked)
-        self._marks.colour(DARK if self._dark else LIGHT, palette)
-        self._vehicle.show(**self._visible)
-        self._labels = WheelLabels(self._client.scene, scene.layout)
-        self._label()
-        self._road = RoadNodes(self._client.scene, scene.layout)
-        self._road.colour(DARK if self._dark else LIGHT)
+        """Make vehicle, road and overlays anew."""
+        if self._nodes is not None:
+            self._nodes.vehicle.remove()
+            self._nodes.road.remove()
+            self._nodes.overlays.remove()
+        now = scene.at(self._time, self._arrow_scale, None if self._on["follow"] else self._origin)
+        api = self._client.scene
+        self._nodes = _Nodes(
+            VehicleNodes(api, scene, now),
+            WheelLabels(api, scene.measures),
+            RoadNodes(api, scene.measures),
+            Overlays(api, scene, now),
+        )
+        self._nodes.vehicle.on_click(lambda wheel: self._picked(wheel))
+        self._colour_nodes()
+        self._show_what_is_on()

@@ -95,7 +95,7 @@ class FakeView:
 
     def __init__(self, client: viser.ClientHandle, dark: bool) -> None:
         self.client, self.dark = client, dark
-        self.follow = self.show_arrows = self.show_labels = self.show_surroundings = True
+        self.switches: dict[str, bool] = {}  # that were used
         self.ghosts: list[Trajectory | None] = []
         self.runs: list[Trajectory] = []
         self.roads: list[Road] = []  # of the drive
@@ -129,8 +129,17 @@ class FakeView:
 
     load_top = None
 
-    def set_view(self, name: str) -> None:
-        self.views.append(name)
+    def set_view(self, standpoint: str) -> None:
+        self.views.append(standpoint)
+
+    def set_switch(self, name: str, on: bool) -> None:
+        self.switches[name] = on
+
+    def set_arrow_scale(self, scale: float) -> None:
+        pass
+
+    def show_surroundings(self, on: bool) -> None:
+        pass
 
     def set_dark(self, dark: bool) -> None:
         self.dark = dark

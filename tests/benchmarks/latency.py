@@ -20,7 +20,7 @@ from app.runs.request import Finished
 from app.server import Explorer as Server
 from app.session.session import Session
 from app.session.window import Window
-from app.view3d.view import Stage
+from app.view3d.view import View3D
 from model import load_config, simulate
 from model.config.config import Config
 from model.simulation.trajectory import Trajectory
@@ -42,7 +42,7 @@ WATCH = """() => {
 }"""
 
 
-class EmptyStage(Stage):
+class EmptyView(View3D):
     """A 3-D view without vehicle and road."""
 
     def show(self, trajectory: Trajectory) -> None: ...
@@ -110,7 +110,7 @@ def measure() -> dict[str, tuple[float, str]]:
         watched(Window, "show_run", on_show),
         watched(viser.ClientHandle, "flush", on_flush),
     ):
-        server = Server(load_config("paper"), "paper", port=0, run=watch.run, make_view=EmptyStage)
+        server = Server(load_config("paper"), "paper", port=0, run=watch.run, make_view=EmptyView)
         try:
             explorer = Explorer(browser.new_page(viewport={"width": 1280, "height": 720}))
             explorer.open(f"{server.address}/?fixedDpr=0.5")

@@ -16,7 +16,7 @@ from typing import Any
 from app.panels.plot_panel import PlotPanel
 from app.server import Explorer
 from app.session.session import Session
-from app.view3d.view import Stage
+from app.view3d.view import View3D
 from model import load_config, simulate
 from model.config.config import Config
 from model.simulation.trajectory import Trajectory
@@ -79,7 +79,7 @@ def measure() -> dict[str, tuple[float, str]]:
         with ExitStack() as timing:
             for method in (
                 (PlotPanel, "show", curves),
-                (Stage, "draw", frames),
+                (View3D, "draw", frames),
                 (Session, "_attempt", everything),
             ):
                 timing.enter_context(timed(*method))

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from app.format.markup import Content, Html, element, joined
 from app.format.parameters import value_text
-from app.reports.html_page import Html, element, joined, table
+from app.reports.html_page import wide_table
 from app.reports.paper.words import HARDLY, change_words, list_words, share_words
 from model.config.parameters import PARAMETER
 from model.paper.study import SOFT, STIFF, Alternative, Figures, PaperStudy
@@ -28,12 +29,12 @@ def assumptions(study: PaperStudy) -> Iterator[Html]:
     )  # fmt: skip
     rows = [_row(study.paper, study.paper, "As Trackride has it")]
     rows += [_row(alternative, study.paper, _name(alternative)) for alternative in study.alternatives]
-    yield table(heads, rows, "numbers")
+    yield wide_table(heads, rows, "numbers")
     for words in _lessons(study):
         yield element("p", words)
 
 
-def _row(alternative: Alternative, paper: Alternative, name: str) -> list[str]:
+def _row(alternative: Alternative, paper: Alternative, name: str) -> list[Content]:
     now, then = alternative.figures, paper.figures
     stiffer = alternative.stiff.acceleration_rms / now.acceleration_rms - 1
     return [

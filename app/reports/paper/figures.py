@@ -91,7 +91,7 @@ def harmonics(study: PaperStudy) -> Drawing:
     return Drawing("Harmonics over the road's amplitude and over speed", WIDTH, 3.3, draw)
 
 
-FIGURES: dict[str, tuple[Callable[[PaperStudy], Drawing], str]] = {
+PAPER_FIGURES: dict[str, tuple[Callable[[PaperStudy], Drawing], str]] = {
     "fig5_acceleration": (
         acceleration,
         "As the paper's Fig. 5 (b). The vehicle starts at full speed, and the waves grow to their height over the "

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from app.format.markup import words_html
+from app.format.markup import Html, element, words_html
 from app.reports.drawings import Drawing
-from app.reports.html_page import Html, document, element, picture
+from app.reports.html_page import document, picture
 from app.reports.paper.assumptions import assumptions
-from app.reports.paper.figures import FIGURES
+from app.reports.paper.figures import PAPER_FIGURES
 from app.reports.paper.findings import Finding, findings
 from model.paper.errata import ERRATA
 from model.paper.study import WAVES, PaperStudy
@@ -28,7 +28,7 @@ CLASSES = {
 
 def paper_files(study: PaperStudy) -> dict[str, bytes]:
     """Name -> content of every file: index.html, and each figure as PNG and SVG."""
-    drawings = {name: (make(study), words) for name, (make, words) in FIGURES.items()}
+    drawings = {name: (make(study), words) for name, (make, words) in PAPER_FIGURES.items()}
     files = {"index.html": _page(study, drawings).encode()}
     for name, (drawing, _) in drawings.items():
         for suffix in (".png", ".svg"):
@@ -91,5 +91,5 @@ def _finding(finding: Finding) -> Html:
 
 def _erratum(number: int) -> Html:
     erratum = ERRATA[number]
-    paper, reading = Html(words_html(erratum.paper)), Html(words_html(erratum.reading))
+    paper, reading = words_html(erratum.paper), words_html(erratum.reading)
     return element("li", element("b", erratum.where), ". ", paper, " ", element("em", "Here: "), reading)

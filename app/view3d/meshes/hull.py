@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.view3d.meshes.layout import Layout
+from app.view3d.meshes.measures import Measures
 from app.view3d.meshes.running_gear import DARK_STEEL, RUBBER, STEEL
 from app.view3d.meshes.solids import Part, Rgba, both_sides, box, convex, lathe, lengthwise, upright
 
@@ -45,18 +45,18 @@ SHAPES = {
 }
 
 
-def hull(layout: Layout) -> list[Part]:
+def hull(measures: Measures) -> list[Part]:
     """Everything that is fixed to the chassis, about the point of the ground under its centre of mass."""
-    unit = layout.at_scale_one()
+    unit = measures.at_scale_one()
     parts = [*_body(unit), *_fenders(unit), *_lamps(unit), *_rollers(unit)]
-    match layout.hull:
+    match measures.hull:
         case "turret":
             parts += [*_turret(unit), *_fittings(unit)]
         case "carrier":
             parts += _carrier_fittings(unit)
         case _:
             parts += _lid(unit)
-    return [part.scaled(layout.scale) for part in parts]
+    return [part.scaled(measures.scale) for part in parts]
 
 
 def _across(outline: Sequence[Point]) -> np.ndarray:
@@ -64,40 +64,40 @@ def _across(outline: Sequence[Point]) -> np.ndarray:
     return np.array([(x, sign * y, z) for x, y, z in outline for sign in (-1, 1)])
 
 
-def hull_edges(layout: Layout) -> list[np.ndarray]:
+def hull_edges(measures: Measures) -> list[np.ndarray]:
     """Lines, each (K, 3), along the edges that make the shape of body, turret and gun; in the frame of `hull`."""
-    unit = layout.at_scale_one()
+    unit = measures.at_scale_one()
     upper, (_, chin) = _upper(unit), _nose(unit)
     side = np.array([*upper, upper[0], chin])
     across = [np.array([corner, corner]) for corner in (*upper, chin)]
     lines = [side, side * (1, -1, 1), *(bar * np.array([(1, 1, 1), (1, -1, 1)]) for bar in across)]
-    if layout.hull == "turret":
+    if measures.hull == "turret":
         lines += _turret_edges(unit)
-    return [layout.scale * line for line in lines]
+    return [measures.scale * line for line in lines]
 
 
-def _turret_edges(layout: Layout) -> list[np.ndarray]:
+def _turret_edges(measures: Measures) -> list[np.ndarray]:
     around = 2 * np.pi * np.arange(TURRET_CORNERS + 1) / TURRET_CORNERS
     circle = np.column_stack([np.cos(around), np.sin(around), np.zeros(len(around))])
     foot, top = (radius * circle + (0.0, 0.0, z) for radius, z in TURRET)
     height = np.array([0.0, 0.0, GUN_HEIGHT + 0.05])  # along its upper edge
     turret = [foot, top, *np.stack([foot, top], axis=1)[: -1 : TURRET_CORNERS // 8]]
     turret += [np.array([(x, 0.0, GUN_RISE * x) for x in GUN]) + height]
-    return [line + _turret_foot(layout) for line in turret]
+    return [line + _turret_foot(measures) for line in turret]
 
 
-def _nose(layout: Layout) -> tuple[Point, Point]:
+def _nose(measures: Measures) -> tuple[Point, Point]:
     """Its tip and, below, its chin."""
-    nose, w = layout.sprocket.x, layout.hull_half_width
-    return (nose + SHAPES[layout.hull].tip, w, layout.fender + 0.04), (nose + 0.02, w, layout.belly + 0.16)
+    nose, w = measures.sprocket.x, measures.hull_half_width
+    return (nose + SHAPES[measures.hull].tip, w, measures.fender + 0.04), (nose + 0.02, w, measures.belly + 0.16)
 
 
-def _upper(layout: Layout) -> list[Point]:
+def _upper(measures: Measures) -> list[Point]:
     """Corners of the body above the fenders, from the tip up and back."""
-    nose, tail, deck = layout.sprocket.x, layout.idler.x, layout.fender + 0.02
-    wide, shape = layout.half_width - 0.08, SHAPES[layout.hull]
+    nose, tail, deck = measures.sprocket.x, measures.idler.x, measures.fender + 0.02
+    wide, shape = measures.half_width - 0.08, SHAPES[measures.hull]
     return [
-        _nose(layout)[0],
+        _nose(measures)[0],
         (nose + 0.30, wide, deck),
         (nose + 0.24, wide - 0.05, deck + 0.10),
         (nose - shape.front, shape.half_width, shape.roof),
@@ -106,14 +106,14 @@ def _upper(layout: Layout) -> list[Point]:
     ]
 
 
-def _turret_foot(layout: Layout) -> np.ndarray:
-    return np.array([layout.middle - 0.18, 0.0, SHAPES[layout.hull].roof - 0.005])
+def _turret_foot(measures: Measures) -> np.ndarray:
+    return np.array([measures.middle - 0.18, 0.0, SHAPES[measures.hull].roof - 0.005])
 
 
-def _body(layout: Layout) -> list[Part]:
-    nose, tail, floor, deck = layout.sprocket.x, layout.idler.x, layout.belly, layout.fender + 0.02
-    w = layout.hull_half_width
-    tip, chin = _nose(layout)
+def _body(measures: Measures) -> list[Part]:
+    nose, tail, floor, deck = measures.sprocket.x, measures.idler.x, measures.belly, measures.fender + 0.02
+    w = measures.hull_half_width
+    tip, chin = _nose(measures)
     lower = [
         chin,
         (nose - 0.28, w, floor),
@@ -123,15 +123,15 @@ def _body(layout: Layout) -> list[Part]:
     ]
     return [
         convex(_across(lower), FLOOR, chamfer=0.02),
-        convex(_across(_upper(layout)), PAINT, chamfer=0.03),
+        convex(_across(_upper(measures)), PAINT, chamfer=0.03),
         convex(_across([tip, chin, (nose - 0.2, w, deck)]), PAINT_DARK, chamfer=0.02),
     ]
 
 
-def _fenders(layout: Layout) -> list[Part]:
+def _fenders(measures: Measures) -> list[Part]:
     """Plates over the tracks with a skirt outside and mudguards at both ends."""
-    inner, outer, z = layout.hull_half_width - 0.05, layout.half_width, layout.fender
-    front, rear = layout.sprocket.x + 0.22, layout.idler.x - 0.26
+    inner, outer, z = measures.hull_half_width - 0.05, measures.half_width, measures.fender
+    front, rear = measures.sprocket.x + 0.22, measures.idler.x - 0.26
 
     def plate(near: tuple[float, float], far: tuple[float, float]) -> Part:
         corners = [(x, y, top - dz) for x, top in (near, far) for y in (inner, outer) for dz in (0.0, 0.025)]
@@ -148,7 +148,7 @@ def _fenders(layout: Layout) -> list[Part]:
     )
 
 
-def _turret(layout: Layout) -> list[Part]:
+def _turret(measures: Measures) -> list[Part]:
     """A low conical turret with a hatch, a sight and a light gun."""
     ring = lathe([(0.86, 0.0), (0.86, 0.05), (0.80, 0.05)], PAINT_DARK, 32)
     foot, top = TURRET
@@ -168,29 +168,29 @@ def _turret(layout: Layout) -> list[Part]:
         box((-0.62, 0.34, 0.62), (0.014, 0.014, 0.9), DARK_STEEL),
         box((-0.62, 0.34, 0.18), (0.06, 0.06, 0.16), PAINT_DARK),
     ]
-    return [part.moved(*_turret_foot(layout)) for part in parts]
+    return [part.moved(*_turret_foot(measures)) for part in parts]
 
 
-def _lamps(layout: Layout) -> list[Part]:
-    nose, tail, deck = layout.sprocket.x, layout.idler.x, layout.fender + 0.02
+def _lamps(measures: Measures) -> list[Part]:
+    nose, tail, deck = measures.sprocket.x, measures.idler.x, measures.fender + 0.02
     lamp = lengthwise(lathe([(0.0, -0.06), (0.075, -0.06), (0.075, 0.06)], PAINT_DARK, 14))
     lens = lengthwise(lathe([(0.075, 0.055), (0.05, 0.075), (0.0, 0.08)], LAMP, 14))
     ahead = [part.moved(nose + 0.12, 1.06, deck + 0.20) for part in (lamp, lens)]
     return both_sides([*ahead, box((tail - 0.37, 1.25, deck + 0.10), (0.05, 0.14, 0.07), TAIL_LAMP)])
 
 
-def _lid(layout: Layout) -> list[Part]:
+def _lid(measures: Measures) -> list[Part]:
     """What closes a plain body: a plate on its roof."""
-    shape = SHAPES[layout.hull]
-    front, rear = layout.sprocket.x - shape.front - 0.15, layout.idler.x - 0.10
+    shape = SHAPES[measures.hull]
+    front, rear = measures.sprocket.x - shape.front - 0.15, measures.idler.x - 0.10
     return [box(((front + rear) / 2, 0.0, shape.roof + 0.01), (front - rear, 1.7, 0.05), PAINT_LIGHT)]
 
 
 class _Plates:
     """The sloping plates of the body above the fenders, for what lies on them."""
 
-    def __init__(self, layout: Layout) -> None:
-        _, (_, wide, deck), (x, _, z), (front, narrow, roof), *_ = _upper(layout)
+    def __init__(self, measures: Measures) -> None:
+        _, (_, wide, deck), (x, _, z), (front, narrow, roof), *_ = _upper(measures)
         self._foot, self._top = np.array([x, z]), np.array([front, roof])
         self._slope = float(np.arctan2(*(self._top - self._foot)[::-1])) - np.pi
         self._fender, self._rise = np.array([wide, deck]), np.array([narrow - wide, roof - deck])
@@ -207,10 +207,10 @@ class _Plates:
         return box((0.0, 0.0, 0.0), size, colour).rolled(self._lean).moved(x, y, z)
 
 
-def _fittings(layout: Layout) -> list[Part]:
+def _fittings(measures: Measures) -> list[Part]:
     """Hatches, doors, vision blocks, splash boards, stowage, exhaust and tow hooks about a turret."""
-    nose, tail, middle, deck = layout.sprocket.x, layout.idler.x, layout.middle, layout.fender + 0.02
-    plates, roof = _Plates(layout), SHAPES[layout.hull].roof
+    nose, tail, middle, deck = measures.sprocket.x, measures.idler.x, measures.middle, measures.fender + 0.02
+    plates, roof = _Plates(measures), SHAPES[measures.hull].roof
     blocks = [middle - 1.45 + 0.62 * k for k in range(4)]
     pairs = [
         box((tail + 0.25, 0.42, roof + 0.012), (0.52, 0.52, 0.04), PAINT_LIGHT),
@@ -219,7 +219,7 @@ def _fittings(layout: Layout) -> list[Part]:
         box((middle + 0.35, 1.44, deck + 0.07), (1.1, 0.10, 0.12), PAINT_DARK),
         *(plates.on_side(x, 0.68, (0.15, 0.13, 0.05), PAINT_DARK) for x in blocks),
         *(plates.on_side(x, 0.68, (0.07, 0.05, 0.07), GLASS) for x in blocks),
-        _tow_hook(layout),
+        _tow_hook(measures),
     ]
     return [
         plates.on_glacis(0.30, 0.0, (0.03, 2.0, 0.16), PAINT_DARK),
@@ -232,17 +232,17 @@ def _fittings(layout: Layout) -> list[Part]:
     ]
 
 
-def _carrier_fittings(layout: Layout) -> list[Part]:
+def _carrier_fittings(measures: Measures) -> list[Part]:
     """Splash board, ramp, hatches of driver, commander and load, stowage, exhaust and tow hooks of a carrier."""
-    nose, tail, middle, deck = layout.sprocket.x, layout.idler.x, layout.middle, layout.fender + 0.02
-    plates, roof, front = _Plates(layout), SHAPES[layout.hull].roof, nose - SHAPES[layout.hull].front
+    nose, tail, middle, deck = measures.sprocket.x, measures.idler.x, measures.middle, measures.fender + 0.02
+    plates, roof, front = _Plates(measures), SHAPES[measures.hull].roof, nose - SHAPES[measures.hull].front
     hatch = upright(lathe([(0.26, 0.0), (0.26, 0.05), (0.20, 0.08), (0.0, 0.09)], PAINT_LIGHT, 20))
     cupola = upright(lathe([(0.42, 0.0), (0.40, 0.14), (0.30, 0.20), (0.0, 0.22)], PAINT, 24))
     blocks = [box((0.38 * x, 0.38 * y, 0.09), (0.12, 0.12, 0.07), GLASS) for x, y in ((1, 0), (0.6, 0.8), (-0.4, 0.9))]
     pairs = [
         *(part.moved(front - 1.35, 0.0, roof) for part in blocks),
         plates.on_side(middle - 0.55, 0.55, (1.5, 0.34, 0.06), PAINT_LIGHT),
-        _tow_hook(layout),
+        _tow_hook(measures),
     ]
     return [
         plates.on_glacis(0.42, 0.0, (0.62, 2.2, 0.05), PAINT_LIGHT),
@@ -257,18 +257,18 @@ def _carrier_fittings(layout: Layout) -> list[Part]:
     ]
 
 
-def _tow_hook(layout: Layout) -> Part:
-    return box((layout.sprocket.x + 0.30, 0.55, layout.belly + 0.34), (0.16, 0.07, 0.10), DARK_STEEL)
+def _tow_hook(measures: Measures) -> Part:
+    return box((measures.sprocket.x + 0.30, 0.55, measures.belly + 0.34), (0.16, 0.07, 0.10), DARK_STEEL)
 
 
-def _rollers(layout: Layout) -> list[Part]:
+def _rollers(measures: Measures) -> list[Part]:
     """Return rollers under the upper run, and the axles of sprocket and idler."""
     parts = []
-    for roller in layout.rollers:
-        R = roller.radius - layout.shoe_thickness
+    for roller in measures.rollers:
+        R = roller.radius - measures.shoe_thickness
         wheel = lathe([(0.0, -0.10), (R, -0.10), (R, 0.10), (0.4 * R, 0.10), (0.0, 0.11)], RUBBER, 16)
-        parts.append(wheel.moved(roller.x, layout.track - 0.04, roller.height))
-    for end in (layout.sprocket, layout.idler):
+        parts.append(wheel.moved(roller.x, measures.track - 0.04, roller.height))
+    for end in (measures.sprocket, measures.idler):
         axle = lathe([(0.35 * end.radius, -0.3), (0.3 * end.radius, 0.0)], STEEL, 14)
-        parts.append(axle.moved(end.x, layout.track, end.height))
+        parts.append(axle.moved(end.x, measures.track, end.height))
     return both_sides(parts)

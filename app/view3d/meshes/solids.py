@@ -112,7 +112,7 @@ def glb(parts: Iterable[Part], *, glow: float = 0.0) -> bytes:
     brightness = 1.0
     material: dict[str, Any] = {}
     if glow:
-        peak = float(amounts[:, :3].max())  # dark colours are to use all of the 8 bits too
+        peak = float(amounts[:, :3].max())  # so that dark colours use all of the 8 bits too
         amounts[:, :3] /= peak
         brightness = glow * peak
         material["extensions"] = {"KHR_materials_unlit": {}}
@@ -139,7 +139,7 @@ def glb(parts: Iterable[Part], *, glow: float = 0.0) -> bytes:
 
 
 def warm_up() -> None:
-    """Load the libraries that meshes are made with: half a second, for which no page is to wait."""
+    """Load the libraries that make meshes: it takes half a second, which no page should have to wait."""
     glb([convex([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], (0, 0, 0, 255))])
 
 
@@ -189,5 +189,5 @@ def _inset(outline: np.ndarray, distance: float) -> np.ndarray:
 
 @cache
 def _cube() -> Part:
-    """Of edge length 1, about the origin. Not made before it is asked for, since that loads SciPy for half a second."""
+    """A cube of edge length 1 about the origin, made when first needed: that loads SciPy, for half a second."""
     return convex([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)], (0, 0, 0, 255))

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from app.view3d.meshes.layout import Layout
+from app.view3d.meshes.measures import Measures
 from app.view3d.meshes.solids import Part, Rgb, lathe, upright
 
 FAR = 400.0  # radius of sky and ground
@@ -68,14 +68,14 @@ class RoadStrip:
         return [part.reshape(-1, 3) for part in (corners[: self._even], corners[self._even :])]
 
 
-def shadow(layout: Layout) -> np.ndarray:
+def shadow(measures: Measures) -> np.ndarray:
     """Vertices (V, 3) of a vehicle's shadow on level ground: strips, each narrower and higher than the one before."""
     strips = []
     for layer in range(SHADOW_LAYERS):
-        inset, z = (layer - 2) * 0.08 * layout.scale, 0.003 + 0.002 * layer
-        x = np.linspace(layout.idler.x + inset, layout.sprocket.x - inset, SHADOW_COLUMNS)
+        inset, z = (layer - 2) * 0.08 * measures.scale, 0.003 + 0.002 * layer
+        x = np.linspace(measures.idler.x + inset, measures.sprocket.x - inset, SHADOW_COLUMNS)
         for side in (-1, 1):
-            edge = side * (layout.half_width - inset)
+            edge = side * (measures.half_width - inset)
             strips.append(np.column_stack([x, np.full_like(x, edge), np.full_like(x, z)]))
     return np.concatenate(strips)
 

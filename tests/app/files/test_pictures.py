@@ -19,7 +19,7 @@ from tests.app.conftest import Tab, trackride_threads, wait_for
 PAPER = load_config("paper")
 
 
-class FakeCamera:
+class FakeBrowser:
     def __init__(self, answer: np.ndarray | Exception) -> None:
         self.answer = answer
         self.camera = SimpleNamespace(wxyz=np.array([1.0, 0, 0, 0]), position=np.zeros(3), fov=0.4, aspect=0.6)
@@ -35,15 +35,15 @@ class FakeCamera:
 def test_a_picture_is_an_opaque_png() -> None:
     pixels = np.zeros((20, 40, 4), dtype=np.uint8)
     pixels[:10] = (255, 0, 0, 255)
-    camera = FakeCamera(pixels)
-    picture = Image.open(io.BytesIO(take_picture(camera, 40, 20, "#0000ff")))
+    browser = FakeBrowser(pixels)
+    picture = Image.open(io.BytesIO(take_picture(browser, 40, 20, "#0000ff")))
     assert (picture.format, picture.mode, picture.size) == ("PNG", "RGB", (40, 20))
     assert picture.getpixel((0, 0)) == (255, 0, 0)
     assert picture.getpixel((0, 15)) == (0, 0, 255)
-    assert camera.asked["size"] == (40, 20)
-    assert camera.asked["transport_format"] == "png"
-    assert camera.asked["timeout"] is not None
-    clear = Image.open(io.BytesIO(take_picture(camera, 40, 20, None)))
+    assert browser.asked["size"] == (40, 20)
+    assert browser.asked["transport_format"] == "png"
+    assert browser.asked["timeout"] is not None
+    clear = Image.open(io.BytesIO(take_picture(browser, 40, 20, None)))
     assert clear.mode == "RGBA"
     assert clear.getpixel((0, 15)) == (0, 0, 0, 0)
 
@@ -52,25 +52,25 @@ def test_a_picture_is_an_opaque_png() -> None:
 def test_a_picture_is_filled_from_left_to_right_by_what_the_page_shows(page: float) -> None:
     fov = framed(0.36, page, 16 / 9)
     assert np.tan(fov / 2) * 16 / 9 == pytest.approx(np.tan(0.36 / 2) * page)
-    camera = FakeCamera(np.zeros((90, 160, 4), dtype=np.uint8))
-    camera.camera.aspect = page
-    take_picture(camera, 160, 90, "white")
-    assert camera.asked["fov"] == pytest.approx(framed(0.4, page, 16 / 9))
+    browser = FakeBrowser(np.zeros((90, 160, 4), dtype=np.uint8))
+    browser.camera.aspect = page
+    take_picture(browser, 160, 90, "white")
+    assert browser.asked["fov"] == pytest.approx(framed(0.4, page, 16 / 9))
 
 
 def test_a_movie_shows_each_time_before_it_is_filmed() -> None:
-    camera = FakeCamera(np.zeros((720, 1280, 3), dtype=np.uint8))
+    browser = FakeBrowser(np.zeros((720, 1280, 3), dtype=np.uint8))
     seen: list[float] = []
-    frames = list(movie_frames(camera, seen.append, 1.0, 2.0))
+    frames = list(movie_frames(browser, seen.append, 1.0, 2.0))
     assert len(frames) == len(seen) == 20
     assert seen == pytest.approx(np.arange(1, 2, 0.05))
-    assert camera.asked["transport_format"] == "jpeg"
+    assert browser.asked["transport_format"] == "jpeg"
 
 
 @pytest.mark.parametrize("error", [TimeoutError("late"), RuntimeError("gone")])
 def test_a_browser_that_does_not_answer_leads_to_a_message(error: Exception) -> None:
     with pytest.raises(NoPictureError, match="browser"):
-        take_picture(FakeCamera(error), 40, 20, "white")
+        take_picture(FakeBrowser(error), 40, 20, "white")
 
 
 def downloads(tab: Tab) -> list[dict[str, Any]]:

@@ -22,9 +22,9 @@ from app.panels.page_layout import (
     chart_height,
     spectrum_height,
 )
-from app.view3d.camera import Standpoint, View, standpoint
+from app.view3d.camera import CameraPose, Standpoint, camera_pose
 from app.view3d.meshes.hull import hull_edges
-from app.view3d.meshes.layout import layout_of
+from app.view3d.meshes.measures import measures_of
 from model import load_config
 from model.dynamics.vehicle import build_system
 
@@ -107,7 +107,7 @@ def test_the_spectrum_takes_what_the_modes_leave_of_a_tall_page_and_half_of_a_lo
     assert spectrum_height(5000) == HIGHEST
 
 
-def heights_in_picture(points: np.ndarray, stood: Standpoint, height: int) -> np.ndarray:
+def heights_in_picture(points: np.ndarray, stood: CameraPose, height: int) -> np.ndarray:
     """px from the upper edge of a picture of this height."""
     ahead = stood.look_at - stood.position
     ahead = ahead / np.linalg.norm(ahead)
@@ -117,15 +117,15 @@ def heights_in_picture(points: np.ndarray, stood: Standpoint, height: int) -> np
     return height / 2 * (1 - (seen @ up) / (seen @ ahead) / np.tan(stood.fov / 2))
 
 
-@pytest.mark.parametrize("view", ["side", "three-quarter", "front"])
+@pytest.mark.parametrize("standpoint", ["side", "three-quarter", "front"])
 @pytest.mark.parametrize(("width", "height"), [(1280, 720), (1600, 900), (1920, 1080), (2560, 1440), (3440, 1440)])
-def test_neither_card_nor_player_hides_the_vehicle(width: int, height: int, view: View) -> None:
+def test_neither_card_nor_player_hides_the_vehicle(width: int, height: int, standpoint: Standpoint) -> None:
     screen, docked = Screen(width, height), width - LEFT - RIGHT - SEAMS
     sizes = screen.update(docked, height)
     assert sizes is not None
-    layout = layout_of(build_system(load_config("paper")), "turret")
-    stood = standpoint(view, layout, (width - LEFT - sizes.right - SEAMS) / height)
-    upper = heights_in_picture(np.concatenate(hull_edges(layout)), stood, height)
+    measures = measures_of(build_system(load_config("paper")), "turret")
+    stood = camera_pose(standpoint, measures, (width - LEFT - sizes.right - SEAMS) / height)
+    upper = heights_in_picture(np.concatenate(hull_edges(measures)), stood, height)
     assert upper.min() > wheel_card.GAP + wheel_card.HEIGHT
-    feet = np.array([(x, y, 0.0) for x in (layout.rear, layout.front) for y in (-layout.arrow, layout.arrow)])
+    feet = np.array([(x, y, 0.0) for x in (measures.rear, measures.front) for y in (-measures.arrow, measures.arrow)])
     assert heights_in_picture(feet, stood, height).max() < height - playback_panel.GAP - playback_panel.HEIGHT

@@ -1,4 +1,4 @@
-"""The stamped figure: what stands on the page, and that all of it fits."""
+"""The stamped figure: what stands on the sheet, and that all of it fits."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from PIL import Image
 from app.format.colours import wheel_palette
 from app.format.differences import figure_text
 from app.reports.sheet import BOTTOM, compose, stamped_figure
-from app.reports.sheet_page import DPI, HEIGHT, MARGIN, WIDTH, Page
+from app.reports.sheet_page import DPI, HEIGHT, MARGIN, WIDTH, Sheet
 from app.view3d.meshes.hull import PAINT
 from model import load_config, simulate
 from model.config.config import Config
@@ -43,18 +43,18 @@ def short_run(changes: dict) -> Trajectory:
     return simulate(PAPER.replace({"simulation.duration": 1.5, "simulation.output_rate": 100, **changes}))
 
 
-def placed(page: Page) -> list[Text]:
-    """All texts that are written on the page, axes' own labels aside."""
-    return [text for text in page.figure.texts if text.get_text()]
+def placed(sheet: Sheet) -> list[Text]:
+    """All texts that are written on the sheet, axes' own labels aside."""
+    return [text for text in sheet.figure.texts if text.get_text()]
 
 
-def words(page: Page) -> list[str]:
-    return [text.get_text() for text in placed(page)]
+def words(sheet: Sheet) -> list[str]:
+    return [text.get_text() for text in placed(sheet)]
 
 
-def plots(page: Page) -> dict[str, object]:
+def plots(sheet: Sheet) -> dict[str, object]:
     """The axes by their titles."""
-    return {axes.get_title(loc="left"): axes for axes in page.figure.axes if axes.get_title(loc="left")}
+    return {axes.get_title(loc="left"): axes for axes in sheet.figure.axes if axes.get_title(loc="left")}
 
 
 def picture(colour: tuple[int, int, int] = (250, 20, 200)) -> bytes:
@@ -93,22 +93,22 @@ def test_another_suffix_is_refused(paper):
 
 
 def test_what_was_changed_comes_first_and_everything_is_there(paper, soft):
-    page = compose(soft, paper, None, "Title")
-    texts = placed(page)
+    sheet = compose(soft, paper, None, "Title")
+    texts = placed(sheet)
     height = {text.get_text(): text.get_position()[1] for text in texts}
     assert height["2.366 kN s/m"] == height["was 4.732 kN s/m"]
     others = [value for label, value in height.items() if label in ("5125 kg", "75.53 kN/m", "15 km/h", "60 MN/m²")]
     assert len(others) == 4
     assert all(value < height["2.366 kN s/m"] for value in others)
-    assert "4.732 kN s/m" not in words(page)
-    assert sum(label.startswith("Road damping") for label in words(page)) == 1
+    assert "4.732 kN s/m" not in words(sheet)
+    assert sum(label.startswith("Road damping") for label in words(sheet)) == 1
 
 
 def test_without_a_baseline_changes_are_against_the_papers_vehicle(paper, soft):
     assert "as in the paper's vehicle" in words(compose(paper, None, None, "Title"))
-    page = compose(soft, None, None, "Title")
-    assert "was 4.732 kN s/m" in words(page)
-    assert "baseline" not in words(page)
+    sheet = compose(soft, None, None, "Title")
+    assert "was 4.732 kN s/m" in words(sheet)
+    assert "baseline" not in words(sheet)
     flat = compose(short_run({"road.type": "flat"}), None, None, "Title")
     assert "was sine" in words(flat)
     round_one = words(compose(short_run({"road.type": "half_round"}), None, None, "Title"))
@@ -117,12 +117,12 @@ def test_without_a_baseline_changes_are_against_the_papers_vehicle(paper, soft):
 
 
 def test_the_ride_figures_stand_beside_the_baselines(paper, soft):
-    page = compose(soft, paper, None, "Title")
+    sheet = compose(soft, paper, None, "Title")
     for run in (paper, soft):
-        assert figure_text(float(np.sqrt(np.mean(run.a[:, 0, 1] ** 2)))) in words(page)
-        assert figure_text(run.normal_load[:, 0].max() / 1e3) in words(page)
+        assert figure_text(float(np.sqrt(np.mean(run.a[:, 0, 1] ** 2)))) in words(sheet)
+        assert figure_text(run.normal_load[:, 0].max() / 1e3) in words(sheet)
     change = 100 * (soft.normal_load[:, 5].max() / paper.normal_load[:, 5].max() - 1)
-    assert f"{change:+.1f}".replace("-", "−") in words(page)
+    assert f"{change:+.1f}".replace("-", "−") in words(sheet)
 
 
 def test_the_plots_show_both_runs_in_the_wheels_colours(paper, soft):
@@ -145,11 +145,11 @@ def test_the_plots_show_both_runs_in_the_wheels_colours(paper, soft):
 
 
 def test_a_picture_that_is_given_is_shown_and_its_time_marked(paper):
-    page = compose(paper, None, picture((250, 20, 200)), "Title", time=2.5)
-    FigureCanvasAgg(page.figure).draw()
-    pixels = np.asarray(page.figure.canvas.buffer_rgba())[..., :3].astype(int)
+    sheet = compose(paper, None, picture((250, 20, 200)), "Title", time=2.5)
+    FigureCanvasAgg(sheet.figure).draw()
+    pixels = np.asarray(sheet.figure.canvas.buffer_rgba())[..., :3].astype(int)
     assert (np.abs(pixels - (250, 20, 200)).max(axis=2) < 8).sum() > 0.8 * (2.6 * DPI) ** 2 * 16 / 9
-    for axes in plots(page).values():
+    for axes in plots(sheet).values():
         assert list(axes.get_lines()[-1].get_xdata()) == [2.5, 2.5]
     unmarked = compose(paper, None, picture(), "Title")
     assert len(plots(unmarked)["Normal load of road wheels, kN"].get_lines()) == 6
@@ -158,14 +158,14 @@ def test_a_picture_that_is_given_is_shown_and_its_time_marked(paper):
 def test_without_a_picture_the_vehicle_is_drawn_with_the_loads_it_has(paper):
     moment = float(paper.t[(paper.normal_load <= 0).sum(axis=1).argmax()])
     loaded = int((paper.normal_load[int(moment * 200)] > 0).sum())
-    page = compose(paper, None, None, "Title", time=moment)
-    view = page.figure.axes[0]
+    sheet = compose(paper, None, None, "Title", time=moment)
+    view = sheet.figure.axes[0]
     arrows = [text for text in view.texts if hasattr(text, "arrow_patch")]
     assert 0 < loaded < 11
     assert len(arrows) == loaded
     assert {text.get_text() for text in view.texts} >= {"R1", "R6", "I1", "I5"}
-    FigureCanvasAgg(page.figure).draw()
-    pixels = np.asarray(page.figure.canvas.buffer_rgba())[..., :3].astype(float)
+    FigureCanvasAgg(sheet.figure).draw()
+    pixels = np.asarray(sheet.figure.canvas.buffer_rgba())[..., :3].astype(float)
     box = view.get_window_extent()
     seen = pixels[int(-box.y1) : int(-box.y0), int(box.x0) : int(box.x1)]
     paint = np.array(PAINT[:3]) / np.linalg.norm(PAINT[:3])
@@ -200,11 +200,11 @@ CASES: dict[str, tuple[dict, dict | None]] = {
 @pytest.mark.parametrize("case", CASES)
 def test_everything_fits_on_the_page(case):
     changes, baseline = CASES[case]
-    page = compose(short_run(changes), None if baseline is None else short_run(baseline), None, f"{case} $" * 20)
-    renderer = FigureCanvasAgg(page.figure).get_renderer()
+    sheet = compose(short_run(changes), None if baseline is None else short_run(baseline), None, f"{case} $" * 20)
+    renderer = FigureCanvasAgg(sheet.figure).get_renderer()
     left, right, tables = MARGIN - 0.03, WIDTH - MARGIN + 0.03, WIDTH / 2
     lowest = HEIGHT
-    for text in placed(page):
+    for text in placed(sheet):
         box = text.get_window_extent(renderer)
         assert left * DPI <= box.x0, text
         assert box.x1 <= right * DPI, text
@@ -218,23 +218,23 @@ def test_everything_fits_on_the_page(case):
 @pytest.mark.parametrize("baseline", [False, True])
 def test_of_many_wheels_those_that_matter_are_told_in_type_that_can_be_read(baseline):
     many = short_run({"vehicle.road_wheels.count": 20})
-    page = compose(
+    sheet = compose(
         many, short_run({"vehicle.road_wheels.count": 20, "road.amplitude": 0.05}) if baseline else None, None, ""
     )
-    assert min(text.get_fontsize() for text in placed(page)) >= 6.0
-    told = {word for word in words(page) if word[0] in "RI" and word[1:].isdigit()}
+    assert min(text.get_fontsize() for text in placed(sheet)) >= 6.0
+    told = {word for word in words(sheet) if word[0] in "RI" and word[1:].isdigit()}
     most_loaded = many.normal_load.max(axis=0)
     assert told >= {"R1", "R20", "I1", "I19", f"R{most_loaded[:20].argmax() + 1}", f"I{most_loaded[20:].argmax() + 1}"}
     assert len(told) <= 11
-    assert any(word.startswith("Of 39 wheels") for word in words(page))
+    assert any(word.startswith("Of 39 wheels") for word in words(sheet))
     assert not any(word.startswith("Of ") for word in words(compose(short_run({}), None, None, "")))
 
 
 def test_texts_of_a_row_do_not_run_into_each_other(paper, soft):
-    page = compose(soft, paper, None, "Title")
-    renderer = FigureCanvasAgg(page.figure).get_renderer()
+    sheet = compose(soft, paper, None, "Title")
+    renderer = FigureCanvasAgg(sheet.figure).get_renderer()
     rows: dict[float, list] = {}
-    for text in placed(page):
+    for text in placed(sheet):
         rows.setdefault(round(text.get_position()[1], 5), []).append(text.get_window_extent(renderer))
     for boxes in rows.values():
         boxes.sort(key=lambda box: box.x0)

@@ -20,7 +20,7 @@ from model.config.config import Config, load_config
 from model.dynamics.equilibrium import NoEquilibriumError
 from model.road.road import Road
 from model.simulation.drive import LiveDrive
-from model.simulation.integrate import STATUS, Status
+from model.simulation.integrate import Status
 from model.simulation.trajectory import Trajectory
 from tests.app.conftest import FakeView, Tab, make_run, pass_frames, simulate_at_once, trackride_threads, wait_for
 
@@ -336,7 +336,7 @@ def test_a_drive_that_diverges_says_so_and_offers_a_restart(
     def broken(drive: LiveDrive, until: float) -> None:
         whole(drive, until)
         if drive.time > 0.3:
-            drive._run._clock.tally[STATUS] = Status.NOT_FINITE
+            drive._run._clock.status = Status.NOT_FINITE
 
     whole = LiveDrive.advance
     monkeypatch.setattr(LiveDrive, "advance", broken)

@@ -64,7 +64,7 @@ def test_tabs_that_cost_more_follow_a_drive_and_say_which_stretch_they_show(expl
     wait_for(lambda: not np.array_equal(tab.charts()[-1]["data"][1], amplitude), "another spectrum")
     wait_for(lambda: tab.html("trackride-map") != load_map, "another map")
     wait_for(lambda: shown() and not shown() & before, "newer stretches")
-    assert "judged when the drive pauses" in tab.html("Warnings")
+    assert "checked when the drive pauses" in tab.html("Warnings")
     tab.press("Play or pause")
     wait_for(lambda: "judged when" not in tab.html("Warnings"), "the judgement")
     wait_for(lambda: len(shown()) == 1, "the same stretch in all tabs")
@@ -146,5 +146,5 @@ def test_warnings_of_a_drive_that_goes_on_leave_open_what_needs_its_road() -> No
         clock.now += 0.1
         driver.frame(1.0)
     state = driver.stand()
-    assert "judged when the drive pauses" in trust_html(state.past, driving=True)
+    assert "checked when the drive pauses" in trust_html(state.past, driving=True)
     assert "into the ground (t" in trust_html(state.past, driving=True, road=state.road)

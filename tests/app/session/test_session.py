@@ -288,7 +288,7 @@ def test_playback_moves_on_and_obeys(explore: Any, open_tab: Any) -> None:
     wait_for(lambda: view.times[-1] == pytest.approx(1.35))
     tab.press("Play or pause")
     wait_for(lambda: len(set(view.times[-3:])) == 3)
-    wait_for(lambda: float(re.search(r"trackride-time' at='\[\[([\d.]+)", tab.html("trackride-time"))[1]) > 1.35)
+    wait_for(lambda: float(re.search(r'trackride-time" at="\[\[([\d.]+)', tab.html("trackride-time"))[1]) > 1.35)
 
 
 def test_view_switches_reach_the_scene_on_the_view_thread(explore: Any, open_tab: Any) -> None:
@@ -299,7 +299,7 @@ def test_view_switches_reach_the_scene_on_the_view_thread(explore: Any, open_tab
     tab.use("Load arrows", False)
     tab.use("Look from", "Front")
     tab.press("Follow the vehicle, or not")
-    wait_for(lambda: not view.show_arrows and not view.follow and view.views == ["front"])
+    wait_for(lambda: view.switches == {"arrows": False, "follow": False} and view.views == ["front"])
     wait_for(lambda: tab.widget("Follow vehicle")["value"] is False)
     light = tab.charts()[0]["series"][1]["stroke"]
     tab.use("Dark", True)

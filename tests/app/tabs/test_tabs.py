@@ -13,12 +13,12 @@ from PIL import Image
 
 from app.format.differences import figure_text
 from app.format.load_colours import RAMP, load_colours
-from app.format.markup import formula_html, words_html
-from app.panels.plot_page import marks_html, plot_page
+from app.format.markup import formula_html
+from app.panels.plot_page import marks_html
 from app.plots.spectrum import Mark, named, spectrum_plot
 from app.tabs.about import LAWS, about_html
-from app.tabs.comfort import FIGURES, comfort_headline, comfort_page
-from app.tabs.load_map import load_map, ticks
+from app.tabs.comfort import COMFORT_FIGURES, comfort_headline, comfort_page
+from app.tabs.load_map import load_map
 from app.tabs.modes import mode_titles, modes_page
 from app.tabs.trust import balances, drift, errata_html, trust_html
 from model import load_config, simulate
@@ -122,11 +122,11 @@ def test_the_ride_in_a_line_and_in_a_table(run: Trajectory) -> None:
     assert f"<b>fairly uncomfortable</b>, {figure_text(felt.total)} m/s² weighted" in comfort_headline(run)
     assert 'class="bad"' not in comfort_headline(run)
     text = comfort_page(run)
-    assert all(figure.name in text for figure in FIGURES)
+    assert all(figure.name in text for figure in COMFORT_FIGURES)
     assert cells_of(text, "Both, m/s²") == [[figure_text(felt.total)], [figure_text(hull.total)]]
     assert cells_of(text, "In words") == [["fairly uncomfortable"], ["a little uncomfortable"]]
     assert "From 4.8 s on" in text
-    assert "Of all there is" in comfort_page(make_run(PAPER.replace({"road.type": "flat"})))
+    assert "Over the whole run" in comfort_page(make_run(PAPER.replace({"road.type": "flat"})))
 
 
 def test_the_ride_beside_a_baselines(run: Trajectory) -> None:
@@ -192,19 +192,6 @@ def test_the_load_map_of_any_vehicle() -> None:
     assert len(pictures(load_map(make_run(samples=1)))) == 2
 
 
-@pytest.mark.parametrize(
-    ("low", "high", "expected"),
-    [
-        (0, 10, [0, 2, 4, 6, 8, 10]),
-        (0, 0.31, [0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3]),
-        (117.5, 127.5, [118, 120, 122, 124, 126]),
-    ],
-)
-def test_ticks_are_round(low: float, high: float, expected: list[float]) -> None:
-    assert ticks(low, high) == pytest.approx(expected)
-    assert not any(str(tick).startswith("-") for tick in ticks(low, high))
-
-
 def test_load_colours_grow_lighter_all_the_way() -> None:
     colours = load_colours(np.linspace(0, 1, 50))[:, :3] @ [0.2126, 0.7152, 0.0722]
     assert (np.diff(colours) > 0).all()
@@ -253,23 +240,10 @@ def test_all_that_was_settled_is_listed() -> None:
 # ── About ──
 
 
-def test_formulas_are_set_as_in_print() -> None:
-    assert formula_html("k_s θ̇_i²") == "<i>k</i><sub>s</sub> <i>θ̇</i><sub>i</sub>²"
-    assert formula_html("max(0, f_n)") == "max(0, <i>f</i><sub>n</sub>)"
-    assert formula_html("(C_q q̇)_q + τ′_0") == "(<i>C</i><sub>q</sub> <i>q̇</i>)<sub>q</sub> + <i>τ′</i><sub>0</sub>"
-    assert formula_html('a "limited to" b < c') == "<i>a</i> limited to <i>b</i> &lt; <i>c</i>"
-    assert formula_html("C_{tt} C_qᵀ") == "<i>C</i><sub>tt</sub> <i>C</i><sub>q</sub>ᵀ"
-    assert words_html("the c_sl of paper_0583 & more") == "the <i>c</i><sub>sl</sub> of paper_0583 &amp; more"
-
-
 def test_about_has_all_equations_and_every_parameter_once() -> None:
     text = about_html()
-    assert all(law.title in text and formula_html(law.formulas[0]) in text for law in LAWS)
+    assert all(law.title in text and str(formula_html(law.formulas[0])) in text for law in LAWS)
     assert text.count("<tr title=") == sum(parameter.group != NOTES for parameter in PARAMETERS)
     assert all(f"<h4>{group}</h4>" in text for group in GROUPS if group != NOTES)
     assert "75.53 kN/m" in text
     assert "_" not in re.sub(r"<[^>]*>", "", text)
-
-
-def test_the_script_of_the_page_cannot_end_its_attribute() -> None:
-    assert plot_page().count('"') == 4 + plot_page().split("<style>")[1].count('"')

@@ -12,7 +12,7 @@ import trimesh
 
 from app.view3d.meshes import running_gear
 from app.view3d.meshes.hull import hull, hull_edges
-from app.view3d.meshes.layout import Layout, layout_of
+from app.view3d.meshes.measures import Measures, measures_of
 from app.view3d.meshes.solids import box, convex, glb, joined, lathe, lengthwise, light, upright
 from app.view3d.meshes.surroundings import TILES, RoadStrip, ground, shadow, shadow_faces, sky
 from app.view3d.snapshot import build_scene
@@ -24,9 +24,9 @@ GREY = (128, 128, 128, 255)
 SUSPENSION_TRAVEL = 0.10  # m at the size of the paper's vehicle that wheels may rise before they touch the drawn hull
 
 
-def layout(**changes: object) -> Layout:
+def measures(**changes: object) -> Measures:
     config = load_config("paper").replace(changes)
-    return layout_of(build_system(config), config.vehicle.hull)
+    return measures_of(build_system(config), config.vehicle.hull)
 
 
 VEHICLES = {
@@ -45,7 +45,7 @@ VEHICLES = {
 
 @pytest.mark.parametrize("changes", VEHICLES.values(), ids=VEHICLES)
 def test_hull_spans_the_running_gear_and_keeps_clear_of_it(changes: dict[str, object]) -> None:
-    vehicle = layout(**changes)
+    vehicle = measures(**changes)
     vertices, _ = joined(hull(vehicle))
     s = vehicle.scale
     assert vertices[:, 0].max() > vehicle.sprocket.x + vehicle.sprocket.radius
@@ -61,7 +61,7 @@ def test_hull_spans_the_running_gear_and_keeps_clear_of_it(changes: dict[str, ob
 @pytest.mark.parametrize(("hull_shape", "top"), [("carrier", (1.7, 2.1)), ("plain", (1.2, 1.4))])
 def test_only_a_hull_with_a_turret_has_a_gun(hull_shape: str, top: tuple[float, float]) -> None:
     """Nor have the edges of another, which its ghost shows."""
-    with_turret, without = layout(), layout(**{"vehicle.hull": hull_shape})
+    with_turret, without = measures(), measures(**{"vehicle.hull": hull_shape})
     for part in (joined(hull(without))[0], np.vstack(hull_edges(without))):
         assert top[0] < part[:, 2].max() < top[1]
         assert part[:, 0].max() < without.sprocket.x + 0.6
@@ -72,7 +72,7 @@ def test_only_a_hull_with_a_turret_has_a_gun(hull_shape: str, top: tuple[float, 
 @pytest.mark.parametrize("hull_shape", HULLS)
 def test_nothing_of_a_hull_stands_out_over_its_glacis(hull_shape: str) -> None:
     """What lies on it is then seen: tip, foot of the glacis and roof are corners of a convex side."""
-    side = hull_edges(layout(**{"vehicle.hull": hull_shape}))[0][[0, 2, 3, 4], ::2]
+    side = hull_edges(measures(**{"vehicle.hull": hull_shape}))[0][[0, 2, 3, 4], ::2]
     along = np.diff(side, axis=0)
     assert (along[:-1, 0] * along[1:, 1] - along[:-1, 1] * along[1:, 0] > 0).all()
 
@@ -82,12 +82,12 @@ def test_nothing_of_a_hull_stands_out_over_its_glacis(hull_shape: str) -> None:
 )
 def test_presets_are_drawn_as_what_they_are(preset: str, shape: str) -> None:
     run = simulate(load_config(preset).replace({"simulation.duration": 0.1}))
-    assert build_scene(run).layout.hull == shape
+    assert build_scene(run).measures.hull == shape
 
 
 @pytest.mark.parametrize("changes", VEHICLES.values(), ids=VEHICLES)
 def test_drawn_wheels_lie_inside_of_the_models_circle_and_apart(changes: dict[str, object]) -> None:
-    vehicle = layout(**changes)
+    vehicle = measures(**changes)
     vertices, _ = joined(running_gear.road_wheel(vehicle))
     radius = np.hypot(vertices[:, 0], vertices[:, 2]).max()
     assert radius == pytest.approx(vehicle.tyre_radius, rel=0.01)
@@ -101,7 +101,7 @@ def test_drawn_wheels_lie_inside_of_the_models_circle_and_apart(changes: dict[st
 
 
 def test_arm_reaches_from_its_pivot_to_its_wheel() -> None:
-    vehicle = layout()
+    vehicle = measures()
     vertices, _ = joined(running_gear.road_arm(vehicle))
     half = np.array(vehicle.pivot) / 2
     ends = vertices[:, ::2].max(axis=0), vertices[:, ::2].min(axis=0)
@@ -112,7 +112,7 @@ def test_arm_reaches_from_its_pivot_to_its_wheel() -> None:
 
 
 def test_layers_do_not_share_a_place_sideways() -> None:
-    vehicle = layout()
+    vehicle = measures()
     wheel, _ = joined(running_gear.road_wheel(vehicle))
     assert vehicle.hull_half_width < vehicle.track - vehicle.track_width / 2
     assert vehicle.track + wheel[:, 1].max() < vehicle.track + vehicle.track_width / 2
@@ -215,7 +215,7 @@ def test_road_strip_has_the_roads_height_and_stripes_of_one_metre() -> None:
 
 
 def test_shadow_is_a_stack_of_strips_that_look_up() -> None:
-    vehicle = layout()
+    vehicle = measures()
     mesh = trimesh.Trimesh(shadow(vehicle), shadow_faces(), process=False)
     assert (mesh.face_normals[:, 2] > 0.99).all()
     assert np.abs(mesh.vertices[:, 1]).max() < vehicle.road_half_width

@@ -1,4 +1,4 @@
-"""Ghost, marks, a drive in the 3-D view and the card of a wheel, without a browser."""
+"""Ghost, overlays, a drive in the 3-D view and the card of a wheel, without a browser."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from app.panels.wheel_card import card
 from app.view3d.ghost import Outline
 from app.view3d.meshes.hull import hull, hull_edges
 from app.view3d.meshes.solids import joined, light
-from app.view3d.overlays import IN_AIR, ring_looks, scale_bar, static_marks, traction_arrows, travel_bars
+from app.view3d.overlays import IN_AIR, ring_looks, scale_bar, static_ticks, traction_arrows, travel_bars
 from app.view3d.snapshot import Scene, build_scene, live_scene
-from app.view3d.view import Stage
+from app.view3d.view import View3D
 from model import Trajectory, load_config, simulate
 from model.analysis.ride import suspension_travel, wheel_state
 from model.simulation.drive import REBASE, LiveDrive
@@ -42,10 +42,10 @@ def flight(scene: Scene) -> tuple[float, int]:
 
 def test_a_load_at_rest_ends_at_its_mark(scene: Scene) -> None:
     now = scene.at(0.0)
-    marks, W = static_marks(scene, now), len(scene.system.wheel)
+    marks, W = static_ticks(scene, now), len(scene.system.wheel)
     middle = marks[:W].mean(axis=1)
     np.testing.assert_allclose(middle[:, ::2], now.arrows[:W, 1, ::2], atol=2e-3)
-    twice = static_marks(scene, scene.at(0.0, 2.0))[:W].mean(axis=1)
+    twice = static_ticks(scene, scene.at(0.0, 2.0))[:W].mean(axis=1)
     np.testing.assert_allclose(twice[:, 2] - now.arrows[:W, 0, 2], 2 * (middle[:, 2] - now.arrows[:W, 0, 2]), rtol=1e-3)
 
 
@@ -80,7 +80,7 @@ def test_travel_bars_are_as_long_as_the_wheels_have_moved(scene: Scene) -> None:
 
 
 def test_the_scale_bar_is_a_metre(scene: Scene) -> None:
-    start, end = scale_bar(scene.layout)[0]
+    start, end = scale_bar(scene.measures)[0]
     assert np.linalg.norm(end - start) == pytest.approx(1.0, abs=1e-6)
 
 
@@ -89,12 +89,12 @@ def test_the_ghost_of_the_same_run_lies_on_the_vehicle(scene: Scene) -> None:
     points = Outline(scene).segments(scene.bodies(3.0), -now.origin).reshape(-1, 3)
     for wheel in now.road_wheels.positions[: scene.system.n]:
         distance = np.hypot(*(points[:, ::2] - wheel[::2]).T)
-        assert (np.abs(distance - scene.layout.radius) < 1e-4).sum() >= 64
+        assert (np.abs(distance - scene.measures.radius) < 1e-4).sum() >= 64
 
 
 def test_the_ghosts_hull_has_the_edges_of_the_hull(scene: Scene) -> None:
-    vertices, _ = joined(hull(scene.layout))
-    edges = np.concatenate(hull_edges(scene.layout))
+    vertices, _ = joined(hull(scene.measures))
+    edges = np.concatenate(hull_edges(scene.measures))
     np.testing.assert_allclose(edges.max(axis=0)[0], vertices.max(axis=0)[0], atol=0.1)
     np.testing.assert_allclose(np.abs(edges[:, 1]).max(), np.abs(vertices[:, 1]).max(), atol=0.15)
     foot = scene.places.on_hull[0]
@@ -105,11 +105,11 @@ def test_the_ghosts_hull_has_the_edges_of_the_hull(scene: Scene) -> None:
 
 
 def test_a_ghost_is_there_until_it_is_taken_away_and_hidden_in_a_drive(tab: Tab) -> None:
-    stage = Stage(tab)  # type: ignore[arg-type]
+    view = View3D(tab)  # type: ignore[arg-type]
     present, other = run(), run(**{"drive.speed_kmh": 25.0})
-    stage.show(present)
-    stage.show_ghost(other)
-    stage.draw(3.0)
+    view.show(present)
+    view.show_ghost(other)
+    view.draw(3.0)
     ghost = build_scene(other)
     bodies = ghost.bodies(3.0)
     np.testing.assert_allclose(
@@ -117,12 +117,12 @@ def test_a_ghost_is_there_until_it_is_taken_away_and_hidden_in_a_drive(tab: Tab)
     )
     drive = LiveDrive(load_config("paper"))
     drive.advance(0.1)
-    stage.show_live(drive.recent(0.1), drive.road())
-    stage.draw(0.1)
+    view.show_live(drive.recent(0.1), drive.road())
+    view.draw(0.1)
     assert not tab.scene._handle_from_node_name["/ghost"].visible
-    stage.show(present)
+    view.show(present)
     assert tab.scene._handle_from_node_name["/ghost"].visible
-    stage.show_ghost(None)
+    view.show_ghost(None)
     assert not any(name.startswith("/ghost") for name in tab.nodes())
 
 
@@ -143,13 +143,13 @@ def test_a_drive_goes_on_where_its_origin_moves_along() -> None:
 
 
 def test_the_road_of_a_drive_is_laid_once_for_many_instants(tab: Tab) -> None:
-    drive, stage = LiveDrive(load_config("paper")), Stage(tab)  # type: ignore[arg-type]
+    drive, view = LiveDrive(load_config("paper")), View3D(tab)  # type: ignore[arg-type]
     drive.advance(0.1)
-    stage.show_live(drive.recent(0.1), drive.road())
-    heights = stage._scene.ground.heights  # type: ignore[union-attr]
+    view.show_live(drive.recent(0.1), drive.road())
+    heights = view._scene.ground.heights  # type: ignore[union-attr]
     drive.advance(0.2)
-    stage.show_live(drive.recent(0.1), drive.road())
-    assert stage._scene.ground.heights is heights  # type: ignore[union-attr]
+    view.show_live(drive.recent(0.1), drive.road())
+    assert view._scene.ground.heights is heights  # type: ignore[union-attr]
 
 
 def test_a_wheel_s_card_says_when_it_is_in_the_air(scene: Scene) -> None:
@@ -165,30 +165,32 @@ def test_a_wheel_s_card_says_when_it_is_in_the_air(scene: Scene) -> None:
 
 @pytest.mark.parametrize(("row", "wheel"), [(0, 0), (5, 5), (6, None), (7, 0), (12, 5)])
 def test_a_click_picks_the_wheel_on_either_side_and_no_idler(tab: Tab, row: int, wheel: int | None) -> None:
-    stage = Stage(tab)  # type: ignore[arg-type]
+    view = View3D(tab)  # type: ignore[arg-type]
     picked: list[int] = []
-    stage.on_pick(picked.append)
-    stage.show(run(**{"simulation.duration": 0.1}))
+    view.on_pick(picked.append)
+    view.show(run(**{"simulation.duration": 0.1}))
     clicked = tab.scene._handle_from_node_name["/vehicle/road_wheels"]._impl.click_cb[0].callback
     asyncio.run(clicked(SimpleNamespace(instance_index=row)))  # type: ignore[arg-type]
     assert picked == ([] if wheel is None else [wheel])
 
 
 def test_rings_are_sent_while_there_are_any_and_once_more_to_be_gone(tab: Tab, scene: Scene) -> None:
-    stage = Stage(tab)  # type: ignore[arg-type]
-    stage.show(scene.trajectory)
+    view = View3D(tab)  # type: ignore[arg-type]
+    view.show(scene.trajectory)
     time, wheel = flight(scene)
 
     def sizes() -> list[np.ndarray]:
-        return [m.updates["batched_scales"] for m in tab.sent() if m.name == "/marks/rings" and hasattr(m, "updates")]
+        return [
+            m.updates["batched_scales"] for m in tab.sent() if m.name == "/overlays/rings" and hasattr(m, "updates")
+        ]
 
-    stage.draw(0.0)  # on the ground
+    view.draw(0.0)  # on the ground
     tab.sent()
-    stage.draw(0.01)
+    view.draw(0.01)
     assert not sizes()
-    stage.draw(time)
+    view.draw(time)
     assert sizes()[-1][wheel] > 0.0
-    stage.draw(0.0)
+    view.draw(0.0)
     assert not sizes()[-1].any()
-    stage.draw(0.01)
+    view.draw(0.01)
     assert not sizes()

@@ -108,8 +108,8 @@ def test_arrows_stand_on_the_contact_points_and_are_as_long_as_the_loads(traject
     right, left = now.arrows.reshape(2, -1, 2, 3)
     np.testing.assert_allclose(right[:, 0, ::2] + [now.x, 0.0], points, atol=1e-5)
     np.testing.assert_allclose(right[:, :, ::2], left[:, :, ::2])
-    assert (right[..., 1] < -scene.layout.track).all()
-    assert (left[..., 1] > scene.layout.track).all()
+    assert (right[..., 1] < -scene.measures.track).all()
+    assert (left[..., 1] > scene.measures.track).all()
     arrow = right[:, 1, ::2] - right[:, 0, ::2]
     np.testing.assert_allclose(
         arrow, 2 * scene.load_scale * trajectory.normal_load[k][:, None] * normals, rtol=1e-3, atol=2e-3
@@ -139,7 +139,7 @@ CASES = [
 def test_track_goes_around_all_wheels_and_not_into_the_ground(changes: dict[str, object]) -> None:
     trajectory = run(**changes)
     scene, system = build_scene(trajectory), trajectory.system
-    thickness = scene.layout.shoe_thickness
+    thickness = scene.measures.shoe_thickness
     for k in (0, 40, len(trajectory.t) - 1):
         now = scene.at(trajectory.t[k])
         right, left = now.shoes.positions.reshape(2, -1, 3)
@@ -147,14 +147,14 @@ def test_track_goes_around_all_wheels_and_not_into_the_ground(changes: dict[str,
         assert (right[:, 2] > scene.ground.road.height(right[:, 0] + now.x) - thickness).all()
         # Shoes hang together, and none comes inside of a wheel
         gaps = np.linalg.norm(np.roll(right, -1, axis=0) - right, axis=1)
-        assert gaps.max() < 1.15 * scene.layout.shoe_pitch
+        assert gaps.max() < 1.15 * scene.measures.shoe_pitch
         centres = trajectory.q[k][system.wheel, :2] - [now.x, 0.0]
         distance = np.linalg.norm(right[:, None, ::2] - centres, axis=2)
-        assert distance.min() > scene.layout.radius - thickness
+        assert distance.min() > scene.measures.radius - thickness
         # Each wheel hangs in the loop: the track passes below and above it
-        below = np.array([right[np.abs(right[:, 0] - x) < scene.layout.shoe_pitch, 2].min() for x in centres[:, 0]])
-        above = np.array([right[np.abs(right[:, 0] - x) < scene.layout.shoe_pitch, 2].max() for x in centres[:, 0]])
-        assert (below < centres[:, 1] - scene.layout.tyre_radius + 1e-6).all()
+        below = np.array([right[np.abs(right[:, 0] - x) < scene.measures.shoe_pitch, 2].min() for x in centres[:, 0]])
+        above = np.array([right[np.abs(right[:, 0] - x) < scene.measures.shoe_pitch, 2].max() for x in centres[:, 0]])
+        assert (below < centres[:, 1] - scene.measures.tyre_radius + 1e-6).all()
         assert (above > centres[:, 1]).all()
 
 
@@ -165,11 +165,11 @@ def test_shoes_on_the_ground_do_not_slip() -> None:
     def on_the_ground(time: float) -> np.ndarray:
         now = scene.at(time)
         x, _, z = now.shoes.positions[: len(now.shoes.positions) // 2].T
-        middle = (np.abs(x) < 1.0) & (z < scene.layout.shoe_thickness)
-        return np.sort((x[middle] + now.x) % scene.layout.shoe_pitch)
+        middle = (np.abs(x) < 1.0) & (z < scene.measures.shoe_thickness)
+        return np.sort((x[middle] + now.x) % scene.measures.shoe_pitch)
 
     first, later = on_the_ground(1.0), on_the_ground(1.013)
-    pitch = scene.layout.shoe_pitch
+    pitch = scene.measures.shoe_pitch
     shift = (np.median(later) - np.median(first) + pitch / 2) % pitch - pitch / 2
     assert abs(shift) < 0.1 * pitch
     assert trajectory.system.v_ref * 0.013 > 0.3 * pitch

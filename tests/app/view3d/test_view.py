@@ -1,4 +1,4 @@
-"""The stage on a real viser scene without a browser: which nodes and messages a run, an instant and a switch cause."""
+"""The 3-D view on a real viser scene without a browser: which nodes and messages runs, instants and switches cause."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 import viser
 
-from app.view3d.camera import VIEWS, standpoint
-from app.view3d.meshes.layout import Layout, layout_of
+from app.view3d.camera import AIMS, camera_pose
+from app.view3d.meshes.measures import Measures, measures_of
 from app.view3d.nodes import ROUNDING
-from app.view3d.view import Stage
+from app.view3d.overlays import SWITCHES
+from app.view3d.view import View3D
 from model import Trajectory, load_config, simulate
 from model.dynamics.vehicle import build_system
 
@@ -84,75 +85,98 @@ def metre_marks(vertices: np.ndarray) -> np.ndarray:
 
 
 def test_nothing_is_drawn_before_the_first_run(tab: Tab) -> None:
-    stage = Stage(tab)  # type: ignore[arg-type]
-    stage.draw(1.0)
-    stage.set_view("front")
+    view = View3D(tab)  # type: ignore[arg-type]
+    view.draw(1.0)
+    view.set_view("front")
     assert not any(name.startswith(("/vehicle", "/road")) for name in tab.nodes())
 
 
 def test_an_instant_takes_few_messages_and_makes_no_nodes(tab: Tab, paper: Trajectory) -> None:
-    stage = Stage(tab)  # type: ignore[arg-type]
-    stage.show(paper)
-    stage.draw(0.10)
+    view = View3D(tab)  # type: ignore[arg-type]
+    view.show(paper)
+    view.draw(0.10)
     nodes = tab.nodes()
     tab.sent()
-    stage.draw(0.12)
+    view.draw(0.12)
     assert tab.nodes() == nodes
     assert 8 <= len(tab.sent()) <= 15
 
 
 def test_another_stiffness_makes_no_nodes_and_sends_no_road(tab: Tab, paper: Trajectory) -> None:
-    stage = Stage(tab)  # type: ignore[arg-type]
-    stage.show(paper)
-    stage.draw(0.0)
+    view = View3D(tab)  # type: ignore[arg-type]
+    view.show(paper)
+    view.draw(0.0)
     handles = dict(tab.scene._handle_from_node_name)
     tab.sent()
-    stage.show(run(**{"vehicle.road_suspension.stiffness": 60000}))
-    stage.draw(0.0)
+    view.show(run(**{"vehicle.road_suspension.stiffness": 60000}))
+    view.draw(0.0)
     assert dict(tab.scene._handle_from_node_name) == handles
     assert not any(getattr(message, "name", "").startswith("/road/") for message in tab.sent())
 
 
 def test_another_amplitude_sends_the_road_only(tab: Tab, paper: Trajectory) -> None:
-    stage = Stage(tab)  # type: ignore[arg-type]
-    stage.show(paper)
-    stage.draw(0.0)
+    view = View3D(tab)  # type: ignore[arg-type]
+    view.show(paper)
+    view.draw(0.0)
     handles = dict(tab.scene._handle_from_node_name)
     tab.sent()
-    stage.show(run(**{"road.amplitude": 0.2}))
-    stage.draw(0.0)
+    view.show(run(**{"road.amplitude": 0.2}))
+    view.draw(0.0)
     assert dict(tab.scene._handle_from_node_name) == handles
     assert sum(getattr(message, "name", "").startswith("/road/") for message in tab.sent()) == 2
 
 
 def test_another_vehicle_replaces_the_nodes_of_the_former(tab: Tab, paper: Trajectory) -> None:
-    stage = Stage(tab)  # type: ignore[arg-type]
-    stage.show(run(**{"vehicle.imaginary_wheels.enabled": False}))
+    view = View3D(tab)  # type: ignore[arg-type]
+    view.show(run(**{"vehicle.imaginary_wheels.enabled": False}))
     assert "/vehicle/imaginary_wheels" not in tab.nodes()
     assert "/vehicle/labels/I1" not in tab.nodes()
-    stage.show(paper)
+    view.show(paper)
     assert {"/vehicle/imaginary_wheels", "/vehicle/labels/R6", "/vehicle/labels/I5"} <= tab.nodes()
-    stage.show(run(**{"vehicle.road_wheels.count": 4}))
+    view.show(run(**{"vehicle.road_wheels.count": 4}))
     assert {"/vehicle/labels/R5", "/vehicle/labels/I4"}.isdisjoint(tab.nodes())
 
 
 def test_switches_outlive_another_vehicle_and_save_messages(tab: Tab, paper: Trajectory) -> None:
-    stage = Stage(tab)  # type: ignore[arg-type]
-    stage.show(paper)
-    stage.show_arrows = stage.show_hull = stage.show_labels = False
-    stage.show(run(**{"vehicle.road_wheels.count": 4}))
-    assert (stage.show_arrows, stage.show_hull, stage.show_labels) == (False, False, False)
-    for name in ("arrows", "hull", "labels"):
-        assert not tab.scene._handle_from_node_name[f"/vehicle/{name}"].visible
+    view = View3D(tab)  # type: ignore[arg-type]
+    view.show(paper)
+    for switch in ("arrows", "names", "scale_bar"):
+        view.set_switch(switch, False)
+    view.show(run(**{"vehicle.road_wheels.count": 4}))
+    for name in ("/vehicle/arrows", "/vehicle/labels", "/overlays/scale_bar"):
+        assert not tab.scene._handle_from_node_name[name].visible
     tab.sent()
-    stage.draw(0.5)
-    assert {"/vehicle/arrows", "/vehicle/hull"}.isdisjoint({message.name for message in tab.sent()})
-    stage.show_arrows = True
+    view.draw(0.5)
+    assert {"/vehicle/arrows", "/overlays/scale_bar"}.isdisjoint({message.name for message in tab.sent()})
+    view.set_switch("arrows", True)
     assert tab.scene._handle_from_node_name["/vehicle/arrows"].visible
     np.testing.assert_array_equal(  # and it is not as it was when it was hidden
         drawn(tab.sent(), "/vehicle/arrows", "points"),
-        stage._scene.at(0.5).arrows,  # type: ignore[union-attr]
+        view._scene.at(0.5).arrows,  # type: ignore[union-attr]
     )
+
+
+@pytest.mark.parametrize("name", SWITCHES)
+def test_each_switch_that_shows_an_overlay_hides_it_and_shows_it(tab: Tab, paper: Trajectory, name: str) -> None:
+    def seen() -> set[str]:
+        nodes = tab.scene._handle_from_node_name.items()
+        return {path for path, node in nodes if path.startswith("/overlays/") and node.visible}
+
+    view = View3D(tab)  # type: ignore[arg-type]
+    for switch in SWITCHES:
+        view.set_switch(switch, False)
+    view.show(paper)
+    hidden = seen()
+    view.set_switch(name, True)
+    shown = seen() - hidden
+    assert bool(shown) == (SWITCHES[name].overlay is not None)
+    view.set_switch(name, False)
+    assert seen() == hidden
+
+
+def test_a_switch_that_does_not_exist_is_refused(tab: Tab) -> None:
+    with pytest.raises(ValueError, match=r"'smoke'\. Allowed: follow, arrows"):
+        View3D(tab).set_switch("smoke", True)  # type: ignore[arg-type]
 
 
 def test_loads_at_the_names_are_those_of_the_time_and_sent_only_when_they_read_otherwise(
@@ -162,85 +186,85 @@ def test_loads_at_the_names_are_those_of_the_time_and_sent_only_when_they_read_o
         found = [m for m in tab.sent() if "/labels/" in m.name and "text" in getattr(m, "updates", {})]
         return {message.name.rpartition("/")[2]: message.updates["text"] for message in found}
 
-    stage = Stage(tab)  # type: ignore[arg-type]
-    stage.show(paper)
-    stage.draw(0.5)
-    stage.write_loads()
+    view = View3D(tab)  # type: ignore[arg-type]
+    view.show(paper)
+    view.draw(0.5)
+    view.write_loads()
     assert not texts()
-    stage.show_loads = True
+    view.set_switch("loads", True)
     said, load = texts(), paper.normal_load[round(0.5 * paper.config.simulation.output_rate)]
     assert said["R1"].split() == ["R1", f"{load[0] / 1e3:.1f}"]
     assert said["I5"].split() == ["I5", f"{load[-1] / 1e3:.1f}"]
-    stage.write_loads()
+    view.write_loads()
     assert not texts()
-    stage.draw(0.0)
-    stage.write_loads()
+    view.draw(0.0)
+    view.write_loads()
     assert texts()
-    stage.show_labels = False
+    view.set_switch("names", False)
     assert tab.scene._handle_from_node_name["/vehicle/labels"].visible
     texts()
-    stage.show_loads = False
+    view.set_switch("loads", False)
     assert texts()["R1"] == "R1"
     assert not tab.scene._handle_from_node_name["/vehicle/labels"].visible
 
 
 def test_longer_arrows_are_drawn_at_once(tab: Tab, paper: Trajectory) -> None:
-    stage = Stage(tab)  # type: ignore[arg-type]
-    stage.show(paper)
-    stage.draw(0.5)
+    view = View3D(tab)  # type: ignore[arg-type]
+    view.show(paper)
+    view.draw(0.5)
     before = drawn(tab.sent(), "/vehicle/arrows", "points")
-    stage.arrow_scale = 2.0
+    view.set_arrow_scale(2.0)
     after = drawn(tab.sent(), "/vehicle/arrows", "points")
     np.testing.assert_allclose(after[:, 1] - after[:, 0], 2 * (before[:, 1] - before[:, 0]), atol=2e-3)
 
 
 def test_following_the_road_moves_else_the_vehicle(tab: Tab, paper: Trajectory) -> None:
-    stage = Stage(tab)  # type: ignore[arg-type]
-    stage.show(paper)
+    view = View3D(tab)  # type: ignore[arg-type]
+    view.show(paper)
     x = paper.q[:, 0, 0]
     tab.sent()
-    stage.draw(0.5)
+    view.draw(0.5)
     sent = tab.sent()
     assert metre_marks(drawn(sent, "/road/even", "vertices")) == pytest.approx(-x[25] % 1.0, abs=ROUNDING)
     arm = drawn(sent, "/vehicle/road_arms", "batched_positions")[0, 0]
     assert arm == pytest.approx(paper.q[25, 1, 0] - x[25], abs=1e-5)
-    stage.follow = False
-    stage.draw(0.6)
+    view.set_switch("follow", False)
+    view.draw(0.6)
     sent = tab.sent()
     assert not any(message.name.startswith("/road") for message in sent)
     arm = drawn(sent, "/vehicle/road_arms", "batched_positions")[0, 0]
     assert arm == pytest.approx(paper.q[30, 1, 0] - x[25], abs=1e-5)
     sky = [message.position[0] for message in sent if message.name == "/sky"]
     assert sky == pytest.approx([x[30] - x[25]])
-    stage.set_view("side")  # brings the vehicle back into the picture
-    stage.draw(0.6)
+    view.set_view("side")  # brings the vehicle back into the picture
+    view.draw(0.6)
     arm = drawn(tab.sent(), "/vehicle/road_arms", "batched_positions")[0, 0]
     assert arm == pytest.approx(paper.q[30, 1, 0] - x[30], abs=1e-5)
-    stage.draw(1.0)
+    view.draw(1.0)
     arm = drawn(tab.sent(), "/vehicle/road_arms", "batched_positions")[0, 0]
     assert arm == pytest.approx(paper.q[50, 1, 0] - x[30], abs=1e-5)
 
 
 def test_dark_changes_colours_without_new_vehicle(tab: Tab, paper: Trajectory) -> None:
-    stage = Stage(tab)  # type: ignore[arg-type]
-    stage.show(paper)
+    view = View3D(tab)  # type: ignore[arg-type]
+    view.show(paper)
     arrows = tab.scene._handle_from_node_name["/vehicle/arrows"]
     before = arrows.colors.copy()
-    stage.set_dark(True)
+    view.set_dark(True)
     assert tab.scene._handle_from_node_name["/vehicle/arrows"] is arrows
     assert (arrows.colors != before).any()
-    stage.set_dark(False)
+    view.set_dark(False)
     np.testing.assert_array_equal(arrows.colors, before)
 
 
 def test_a_run_without_samples_leaves_the_former(tab: Tab, paper: Trajectory) -> None:
-    stage = Stage(tab)  # type: ignore[arg-type]
-    stage.show(paper)
+    view = View3D(tab)  # type: ignore[arg-type]
+    view.show(paper)
     fields = {name: getattr(paper, name) for name in Trajectory.__dataclass_fields__}
     arrays = {name: value[:0] for name, value in fields.items() if isinstance(value, np.ndarray)}
-    stage.show(Trajectory(**{**fields, **arrays}))
+    view.show(Trajectory(**{**fields, **arrays}))
     tab.sent()
-    stage.draw(0.5)
+    view.draw(0.5)
     arm = drawn(tab.sent(), "/vehicle/road_arms", "batched_positions")[0, 0]
     assert arm == pytest.approx(paper.q[25, 1, 0] - paper.q[25, 0, 0], abs=1e-5)
 
@@ -256,13 +280,13 @@ def seen(point: np.ndarray, position: np.ndarray, look_at: np.ndarray, fov: floa
 
 
 @pytest.mark.parametrize("aspect", [0.66, 1.0, 1.78, 2.4])
-@pytest.mark.parametrize("view", VIEWS)
+@pytest.mark.parametrize("standpoint", AIMS)
 @pytest.mark.parametrize("changes", [{}, {"vehicle.road_wheels.count": 14}, {"vehicle.road_wheels.count": 2}])
-def test_a_view_has_what_it_is_for_in_the_picture(view: Any, aspect: float, changes: dict[str, object]) -> None:
-    vehicle: Layout = layout_of(build_system(load_config("paper").replace(changes)), "turret")
-    place = standpoint(view, vehicle, aspect)
+def test_a_view_has_what_it_is_for_in_the_picture(standpoint: Any, aspect: float, changes: dict[str, object]) -> None:
+    vehicle: Measures = measures_of(build_system(load_config("paper").replace(changes)), "turret")
+    place = camera_pose(standpoint, vehicle, aspect)
     s = vehicle.scale
-    if view == "wheel":
+    if standpoint == "wheel":
         corners = [(vehicle.front + x * s, -vehicle.track, z * s) for x in (-0.3, 0.3) for z in (0.0, 0.6)]
     else:
         ends = vehicle.idler.x - 0.4 * s, vehicle.sprocket.x + 0.4 * s
@@ -275,20 +299,20 @@ def test_a_view_has_what_it_is_for_in_the_picture(view: Any, aspect: float, chan
 
 
 def test_the_camera_goes_nearer_to_a_much_smaller_vehicle_only(tab: Tab, paper: Trajectory) -> None:
-    stage = Stage(tab)  # type: ignore[arg-type]
-    stage.show(paper)
-    stage.set_view("front")
+    view = View3D(tab)  # type: ignore[arg-type]
+    view.show(paper)
+    view.set_view("front")
     for preset, moves in (("m113", False), ("robot", True), ("robot", False), ("paper", True)):
         before = np.array(tab.camera.position)
-        stage.show(simulate(load_config(preset).replace({"simulation.duration": 0.1})))
+        view.show(simulate(load_config(preset).replace({"simulation.duration": 0.1})))
         after = np.array(tab.camera.position)
         assert (np.linalg.norm(after - before) > 1.0) == moves
         assert after[0] > 2 * abs(after[1])  # still from the front
 
 
 def test_the_camera_fits_a_new_shape_of_the_picture_unless_moved(tab: Tab, paper: Trajectory) -> None:
-    stage = Stage(tab)  # type: ignore[arg-type]
-    stage.show(paper)
+    view = View3D(tab)  # type: ignore[arg-type]
+    view.show(paper)
     wide = np.array(tab.camera.position)
     tab.camera.image_width = 800
     asyncio.run(tab.camera.moved(tab.camera))  # type: ignore[operator]

@@ -23,7 +23,7 @@ class Circle(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Layout:
+class Measures:
     """Compares equal for vehicles that look the same."""
 
     wheel_x: tuple[float, ...]  # road wheels, front first
@@ -37,10 +37,10 @@ class Layout:
         """How much larger than the paper's vehicle, by its wheels."""
         return self.radius / PAPER_RADIUS
 
-    def at_scale_one(self) -> Layout:
+    def at_scale_one(self) -> Measures:
         """The same vehicle at the size of the paper's."""
         s = self.scale
-        return Layout(
+        return Measures(
             tuple(x / s for x in self.wheel_x),
             self.radius / s,
             tuple(length / s for length in self.links),
@@ -146,13 +146,13 @@ class Layout:
         return 2.0 * self.scale
 
 
-def layout_of(system: System, hull: str) -> Layout:
-    """The layout of a vehicle whose hull has this shape."""
+def measures_of(system: System, hull: str) -> Measures:
+    """The measures of a vehicle whose hull has this shape (one of model.config.parameters.HULLS)."""
     design = system.q_design
     wheels = design[system.road_wheels]
     half_arm = design[1, :2] - wheels[0, :2]
     links = 2 * (wheels[: system.m, 0] - design[system.imaginary_arms, 0])
-    return Layout(
+    return Measures(
         wheel_x=tuple(wheels[:, 0].tolist()),
         radius=system.r,
         links=tuple(links.tolist()),
