@@ -369,7 +369,7 @@ def read_profile(path: str | Path, columns: Any = (), units: Any = (), key: str 
     try:
         return read_profile_file(_read(path, FILE_LIMIT), columns, units)
     except PointsError as error:
-        message = f"{Path(path).name[:80]}: {error}"
+        message = f"{error} ({Path(path).name[:80]})"
     except (OSError, ValueError) as error:
         message = f"{str(path)[:200]} cannot be read: {getattr(error, 'strerror', None) or error}"
     raise ConfigError([Fault(key, str(path), message)])

@@ -36,6 +36,7 @@ SPELLED = {
     **dict.fromkeys(("foot", "feet", "'"), "ft"),
     **dict.fromkeys(("inch", "inches", '"'), "in"),
 }
+LOOKED_AT = 1000  # lines that tell blanks from commas between columns
 NO_UNIT = {"", "-", "1"}  # in brackets
 FOREIGN = {"yd", "yard", "yards", "mi", "mile", "miles", "um", "µm", "μm", "nm", "v", "g", "s", "deg", "rad", "%"}
 MISSING = {
@@ -83,7 +84,9 @@ class _Sheet:
     """A table of text."""
 
     columns: list[_Column]
-    lines: Sequence[int]  # number of the line of each row, from 1
+    table: np.ndarray | None  # (rows, columns), where all cells are plain numbers; the columns then have no cells
+    rows: list[str]
+    lines: list[int]  # number of the line of each row, from 1
     headed: bool
     separator: str
     remarks: list[str]  # comments and titles
@@ -135,7 +138,7 @@ def _of_sheet(sheet: _Sheet, columns: Sequence[str], units: Sequence[str]) -> Pr
     named = "no unit named, read as m" if along is None and up is None else _units_text(along or "m", up or "m")
     if len(sheet.columns) > 2 or columns:
         named += f"; columns {sheet.name(first)} and {sheet.name(second)}"
-    return _read(x, y, named, len(sheet.columns[0].cells))
+    return _read(x, y, named, len(sheet.rows))
 
 
 def _units_text(along: str, up: str) -> str:
@@ -191,12 +194,13 @@ def _refuse_heights_that_look_like_no_metres(x: np.ndarray, y: np.ndarray) -> No
 
 def _refuse_one_column_of_decimal_commas(sheet: _Sheet, x: np.ndarray, y: np.ndarray) -> None:
     """Rows like 100,2: two whole numbers, or one with a decimal comma? No heading says it, but two would be a cliff."""
-    cells = [cell for column in sheet.columns for cell in column.cells]
-    if sheet.headed or sheet.separator != "," or len(sheet.columns) != 2 or not all(cell.isdigit() for cell in cells):
+    if sheet.headed or sheet.separator != "," or len(sheet.columns) != 2:
+        return
+    if not all(row.replace(",", "").isdigit() for row in sheet.rows):
         return
     if np.abs(np.diff(y) / np.diff(x)).max() > 1.0:
         raise PointsError(
-            f"line {sheet.lines[0]}: {','.join(column.cells[0] for column in sheet.columns)!r} looks like one column "
+            f"line {sheet.lines[0]}: {sheet.rows[0][:40]!r} looks like one column "
             "with a decimal comma; two are needed, x and height. If it is two, write x,y above them"
         )
 
@@ -290,33 +294,54 @@ def _sheet(text: str) -> _Sheet:
     remarks = [line.lstrip("#%!/ ") for _, line in numbered if line.startswith(COMMENT)]
     numbered = [(number, line) for number, line in numbered if not line.startswith(COMMENT)]
     separator = separator or _separator([line for _, line in numbered])
-    rows = [_split(line, separator, number) for number, line in numbered]
-    first = next((k for k, row in enumerate(rows) if _is_data(row)), len(rows))
-    data, lines = rows[first:], [number for number, _ in numbered[first:]]
-    if len(data) < 2:
-        raise PointsError(f"{len(data)} points; give 2 to {POINT_LIMIT}, two numbers each: x and y in m")
-    width = max(len(data[0]), 1)
-    while width > 2 and not any(len(row) >= width and row[width - 1] for row in data):
-        width -= 1  # every line ends in a separator
-    for row, number in zip(data, lines, strict=True):
-        if len(row) != width and (len(row) < width or any(row[width:])):
-            raise PointsError(f"line {number}: {len(row)} numbers; give {width}, as in line {lines[0]}")
-    above = rows[:first]
+    above: list[list[str]] = []
+    for number, line in numbered:
+        row = _split(line, separator, number)
+        if _is_data(row):
+            break
+        above.append(row)
+    lines, rows = [number for number, _ in numbered[len(above) :]], [line for _, line in numbered[len(above) :]]
+    if len(rows) < 2:
+        raise PointsError(f"{len(rows)} points; give 2 to {POINT_LIMIT}, two numbers each: x and y in m")
+    table, cells = _plain_numbers(rows, separator), []
+    if table is None:
+        cells = _cells(rows, lines, separator)
+    width = len(cells) if table is None else table.shape[1]
     units = above.pop() if above and _is_units(above[-1]) else []
     heading = above.pop() if above and (len(above[-1]) > 1 or width == 1) else []
     remarks += [" ".join(row) for row in above]
     if not heading and remarks:
         comment = _split(remarks[-1], separator, 0)
-        heading = (
-            comment if len(comment) == width and any(_words(_Column(c, ())) & (ALONG | UP) for c in comment) else []
-        )
+        if len(comment) == width and any(_words(_Column(cell, ())) & (ALONG | UP) for cell in comment):
+            heading = comment
     heading, units = (row[:width] if not any(row[width:]) else row for row in (heading, units))
     for row, what in ((heading, "headings"), (units, "units")):
         if row and len(row) != width:
             raise PointsError(f"line {lines[0]}: {width} numbers below {len(row)} {what}; give as many of both")
-    cells = list(zip(*(row[:width] for row in data), strict=True))
-    columns = [_Column(heading[k] if heading else "", cells[k], units[k] if units else "") for k in range(len(cells))]
-    return _Sheet(columns, lines, bool(heading), separator, remarks)
+    headings, second = heading or [""] * width, units or [""] * width
+    columns = [_Column(headings[k], cells[k] if cells else (), second[k]) for k in range(width)]
+    return _Sheet(columns, table, rows, lines, bool(heading), separator, remarks)
+
+
+def _plain_numbers(rows: list[str], separator: str) -> np.ndarray | None:
+    """The table of rows that hold finite numbers with decimal points and nothing else, quickly; else None."""
+    try:
+        table = np.loadtxt(rows, delimiter=None if separator == " " else separator, comments=None, ndmin=2)
+    except ValueError:
+        return None
+    return table if len(table) == len(rows) and np.isfinite(table).all() else None
+
+
+def _cells(rows: list[str], lines: list[int], separator: str) -> list[list[str]]:
+    """The cells of each column. Raises PointsError where a row has more or fewer than the first."""
+    data = [_split(row, separator, number) for row, number in zip(rows, lines, strict=True)]
+    width = max(len(data[0]), 1)
+    while width > 2 and not any(len(row) >= width and row[width - 1] for row in data):
+        width -= 1  # every line ends in a separator
+    for row, number in zip(data, lines, strict=True):
+        if len(row) < width or any(row[width:]):
+            raise PointsError(f"line {number}: {len(row)} numbers; give {width}, as in line {lines[0]}")
+    return [[row[k] for row in data] for k in range(width)]
 
 
 def _separator(lines: list[str]) -> str:
@@ -324,9 +349,9 @@ def _separator(lines: list[str]) -> str:
     for separator in (";", "\t"):
         if any(separator in line for line in lines):
             return separator
-    if all("," not in line for line in lines):
+    if not any("," in line for line in lines):
         return " "
-    with_numbers = [line.split() for line in lines if NUMBER.match(line)]
+    with_numbers = [line.split() for line in lines[:LOOKED_AT] if NUMBER.match(line)]
     blanks = with_numbers and all(len(row) > 1 and all(map(NUMBER.fullmatch, row)) for row in with_numbers)
     return " " if blanks else ","
 
@@ -339,7 +364,8 @@ def _split(line: str, separator: str, number: int) -> list[str]:
             return [cell.strip() for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True))]
         except (csv.Error, StopIteration, ValueError):
             raise PointsError(f"line {number}: the quotes cannot be read") from None
-    return [cell.strip() for cell in line.split(separator)]
+    cells = line.split(separator)
+    return [cell.strip() for cell in cells] if " " in line or (separator != "\t" and "\t" in line) else cells
 
 
 def _is_data(row: list[str]) -> bool:
@@ -363,6 +389,8 @@ def _refuse_empty(sheet: _Sheet, number: int) -> None:
 
 def _numbers(sheet: _Sheet, *chosen: int) -> list[np.ndarray]:
     """The numbers of these columns. Raises PointsError for a cell that holds none."""
+    if sheet.table is not None:
+        return [sheet.table[:POINT_LIMIT, number] for number in chosen]
     columns = [sheet.columns[number].cells[:POINT_LIMIT] for number in chosen]
     for number in chosen:
         _refuse_empty(sheet, number)
@@ -378,8 +406,9 @@ def _numbers(sheet: _Sheet, *chosen: int) -> list[np.ndarray]:
     found = []
     for number, cells in zip(chosen, columns, strict=True):
         try:
-            values = np.array([cell.replace(",", ".") for cell in cells]).astype(float)
-            sound = bool(np.isfinite(values).all()) and not any("_" in cell for cell in cells)
+            values = np.array([float(cell.replace(",", ".")) for cell in cells] if commas else list(map(float, cells)))
+            all_cells = "".join(cells)
+            sound = bool(np.isfinite(values).all()) and "_" not in all_cells and all_cells.isascii()
         except ValueError:
             sound = False
         if not sound:
@@ -392,7 +421,7 @@ def _numbers(sheet: _Sheet, *chosen: int) -> list[np.ndarray]:
                 (0, cells[0]),
             )
             raise PointsError(
-                f"line {sheet.lines[row]}: {cell[:40]!r} in {sheet.name(number)!r} is no number; give x and y in m"
+                f"line {sheet.lines[row]}: {cell[:40]!r} is no number; give x and y in m (here {sheet.name(number)})"
             )
         found.append(values)
     return found
