@@ -96,6 +96,7 @@ class _Sheet:
         return self.columns[number].heading or f"column {number + 1}"
 
 
+@np.errstate(all="ignore")  # a file may hold any numbers: `check` refuses those that make no road
 def read_profile_file(data: bytes, columns: Sequence[str] = (), units: Sequence[str] = ()) -> ProfileFile:
     """The profile in a file's content.
 

@@ -71,6 +71,8 @@ def check(x: np.ndarray, y: np.ndarray, name: Callable[[int], str]) -> None:
     refuse(~(np.abs(x) <= FURTHEST), f"x must be from -{number_text(FURTHEST)} to {number_text(FURTHEST)} m")
     refuse(~(np.abs(y) <= HIGHEST), f"y must be from -{number_text(HIGHEST)} to {number_text(HIGHEST)} m")
     gap = np.diff(x)
+    if (gap < 0.0).all():
+        raise PointsError("x falls all along, as it must grow from point to point: turn the order of the lines round")
     refuse(
         np.append(False, gap < 0.999 * NEAREST),
         f"x must grow from point to point, by {number_text(1e3 * NEAREST)} mm at least",

@@ -8,6 +8,7 @@ from model.compiled import allocating
 
 FINE = 1 / 32  # of the wheel's radius: points this far from both neighbours, or further, are kept
 BRIDGING = 0.5  # of the wheel's radius: no wheel's centre comes nearer to the road than this
+LONGEST = 1000  # points that a line may pass, which bounds the work
 CHANGED = 1e-4  # m: by how much the distance from a wheel's centre to the road may change
 
 
@@ -41,7 +42,7 @@ def _kept(x, y, free, bridged):
         last = a + 1
         highest, lowest = -np.inf, np.inf  # slopes of lines from a that pass what lies between within CHANGED
         c = a + 1
-        while c < count:
+        while c < min(count, a + LONGEST):
             run, rise = x[c] - x[a], y[c] - y[a]
             slope = rise / run
             short = run * run + rise * rise <= bridged * bridged

@@ -367,7 +367,7 @@ def test_heights_in_mm_and_in_inches_are_the_same_road():
         ("dropouts_two_tracks.csv", "line 2: the cell of 'left m' is empty"),
         ("nan_first_row.csv", "line 1: 'NaN' is no number"),
         ("heights_only_decimal_comma.txt", "line 1: '100,2' looks like one column with a decimal comma"),
-        ("reversed.csv", "line 3: x must grow"),
+        ("reversed.csv", "x falls all along, as it must grow from point to point: turn the order of the lines round"),
     ],
 )
 def test_files_that_are_refused(name, words):
