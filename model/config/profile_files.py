@@ -120,6 +120,9 @@ def _of_channels(channels: Channels, columns: Sequence[str], units: Sequence[str
     y, name, unit = channels.along(columns[-1] if columns else None)
     up = _unit(units, 1) or _known(unit) or "m"
     y = y[:POINT_LIMIT]
+    if np.isnan(y).any():
+        sample = int(np.isnan(y).argmax()) + 1
+        raise PointsError(f"{channels.format}, {name}: sample {sample} is missing; choose another line by road.columns")
     x = (channels.start + np.arange(len(y)) * channels.step) * UNITS[along]
     y = y * UNITS[up]
     check(x, y, lambda row: f"{channels.format}, sample {row + 1}")

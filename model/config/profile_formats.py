@@ -119,14 +119,14 @@ def is_crg(data: bytes) -> bool:
 
 def read_crg(data: bytes) -> Channels:
     """An OpenCRG road: its grid of heights, with slope and banking of the reference line added. Raises PointsError."""
+    if re.search(rb"(?im)^\$ROAD_CRG_FILE", data[:100_000]):
+        raise PointsError("OpenCRG: the header names another file; give that one")
     ends = re.search(rb"(?m)^\${4,}[^\n]*\n", data)
     if ends is None:
         raise PointsError("OpenCRG: the header has no end, a line of $$$$")
     header = data[: ends.start()].decode("latin-1").replace("\r", "")
     lines = [line.partition("!")[0].strip() for line in header.split("\n") if not line.startswith("*")]
     entries = dict(re.findall(r"(?m)^(\w+)\s*=\s*(\S+)", "\n".join(lines).upper()))
-    if re.search(r"(?im)^\$ROAD_CRG_FILE", header):
-        raise PointsError("OpenCRG: the header names another file; give that one")
     kind = next((line[2:6].upper() for line in lines if line.startswith("#:")), "")
     channels = [line[2:].strip() for line in lines if line.startswith("D:")]
     sections = [k for k, name in enumerate(channels) if name.lower().startswith("long section")]
