@@ -26,6 +26,8 @@ _KERNELS = (
     "dynamics/lanes.py",
     "dynamics/contact.py",
     "dynamics/kernel.py",
+    "simulation/dense.py",
+    "simulation/extremes.py",
     "simulation/steppers.py",
 )
 _package = Path(__file__).parent

@@ -308,7 +308,10 @@ def test_open_crg_with_a_slope_and_numbered_sections():
             "OpenCRG with data of type 'XYZW'; LRFI, LDFI, KRBI, KDBI are read",
         ),
         (crg("LRFI").replace(b"0.0200000", b"0.02x0000"), "OpenCRG, record 2: '0.02x0000' is no number"),
-        (crg("LRFI").replace(b" 0.0200000", b"**********"), "OpenCRG, v = 0 m: sample 2 is missing; choose another line by road.columns"),
+        (
+            crg("LRFI").replace(b" 0.0200000", b"**********"),
+            "OpenCRG, v = 0 m: sample 2 is missing; choose another line by road.columns",
+        ),
         (crg("LRFI", sections=""), "OpenCRG: the header defines no long sections"),
         (crg("LRFI", "$\n$ROAD_CRG_FILE\nother.crg\n"), "OpenCRG: the header names another file"),
     ],
