@@ -23,6 +23,7 @@ _KERNELS = (
     "compiled.py",
     "road/nearest_point.py",
     "road/table.py",
+    "road/thinning.py",
     "dynamics/ground.py",
     "dynamics/vehicle.py",
     "dynamics/suspension.py",

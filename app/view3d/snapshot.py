@@ -20,7 +20,7 @@ from app.view3d.meshes.measures import Measures, measures_of
 from app.view3d.meshes.surroundings import AHEAD, BEHIND, TILES, shadow
 from app.view3d.track_belt import ARC, points_along, track_path
 from model.dynamics.vehicle import System
-from model.road.road import Road, build_road
+from model.road.road import Road
 from model.simulation.drive import REBASE
 from model.simulation.trajectory import Trajectory
 
@@ -285,9 +285,9 @@ def build_scene(trajectory: Trajectory, like: Scene | None = None) -> Scene:
     x = trajectory.q[:, system.chassis, 0]
     first, last = float(x.min()) - BEHIND - TILES, float(x.max()) + AHEAD + TILES
     if like is None or like.measures != measures:
-        ground = GroundLine.along(build_road(config), first, last)
+        ground = GroundLine.along(trajectory.road, first, last)
         return Scene(trajectory, system, measures, Places(system, measures), ground)
-    ground = GroundLine.along(build_road(config), first, last, like.ground)
+    ground = GroundLine.along(trajectory.road, first, last, like.ground)
     return Scene(trajectory, system, measures, like.places, ground)
 
 

@@ -14,7 +14,7 @@ from model.analysis.signals import seat, steady
 from model.config.config import SineRoad
 from model.dynamics.equilibrium import NoEquilibriumError, rest_pose
 from model.dynamics.vehicle import System
-from model.road.road import Road, build_road
+from model.road.road import Road, profile_end, profile_start
 from model.simulation.trajectory import Trajectory, wheel_names
 
 ARM_LIMIT = np.radians(45)  # turn of a road arm beyond which the model is doubtful
@@ -233,7 +233,7 @@ def _figures(trajectory: Trajectory) -> dict[tuple[_Figure, str], float]:
 def wheel_state(trajectory: Trajectory, wheel: int, time: float, road: Road | None = None) -> WheelState:
     """A wheel, counted from 0 with road wheels first, at a time, s; between samples in proportion.
 
-    A time outside the run gives its start or its end. road: where it is at hand, or another than the configuration's.
+    A time outside the run gives its start or its end. road: where it is at hand, or another than the run's own.
     """
     system = trajectory.system
     t = trajectory.t
@@ -245,7 +245,7 @@ def wheel_state(trajectory: Trajectory, wheel: int, time: float, road: Road | No
         return (1 - part) * samples[before] + part * samples[after]
 
     q, load = at_time(trajectory.q), at_time(trajectory.normal_load)
-    touch = contact_motion(system, road or build_road(trajectory.config), q, at_time(trajectory.v))
+    touch = contact_motion(system, road or trajectory.road, q, at_time(trajectory.v))
     touching = touch.depth[wheel] > 0
     total = float(load.sum())
     share = float(load[wheel]) / total if total > 0 else None
@@ -283,19 +283,24 @@ def contact_motion(system: System, road: Road, q: np.ndarray, v: np.ndarray) -> 
 def penetration(trajectory: Trajectory, road: Road | None = None) -> np.ndarray:
     """(N, W) m: how deep each wheel is in the ground; negative, and −∞ high up, in the air.
 
-    road: another than the configuration's.
+    road: another than the run's own.
     """
-    return contact_motion(trajectory.system, road or build_road(trajectory.config), trajectory.q, trajectory.v).depth
+    return contact_motion(trajectory.system, road or trajectory.road, trajectory.q, trajectory.v).depth
 
 
 def warnings(trajectory: Trajectory, road: Road | None = None) -> list[RideWarning]:
-    """What the reader of this run should know, each with what it means. road: another than the configuration's."""
-    return [*motion_warnings(trajectory), *_wheels_sunk_deep(trajectory, road)]
+    """What the reader of this run should know, each with what it means. road: another than the run's own."""
+    of_profile = _profile_missed(trajectory) if road is None else ()
+    return [*motion_warnings(trajectory), *of_profile, *_wheels_sunk_deep(trajectory, road)]
 
 
 def motion_warnings(trajectory: Trajectory) -> list[RideWarning]:
     """Those of the warnings that need no road."""
-    return [*_arms_turned_far(trajectory), *_vehicle_in_the_air(trajectory), *_wheels_in_phase(trajectory)]
+    return [
+        *_arms_turned_far(trajectory),
+        *_vehicle_in_the_air(trajectory),
+        *_wheels_in_phase(trajectory),
+    ]
 
 
 def _arms_turned_far(trajectory: Trajectory) -> Iterator[RideWarning]:
@@ -343,4 +348,24 @@ def _wheels_in_phase(trajectory: Trajectory) -> Iterator[RideWarning]:
             f"The wavelength, {road.wavelength:g} m, fits the wheel spacing",
             "All road wheels rise and fall together: the hull bounces without pitching, more than on waves a "
             "little shorter or longer.",
+        )
+
+
+def _profile_missed(trajectory: Trajectory) -> Iterator[RideWarning]:
+    """Of a measured profile that is not reached, or that ends under way."""
+    system, config = trajectory.system, trajectory.config
+    start, end = profile_start(config), profile_end(config)
+    if start is None:
+        return
+    wheels = trajectory.q[:, system.road_wheels, 0]
+    if wheels.max() < start:
+        yield RideWarning(
+            f"The profile was not reached: it begins at x = {start:.6g} m, the wheels came to {wheels.max():.4g} m",
+            "Nothing here is of the measured road: give road.start, where its first point is to lie, or a longer run.",
+        )
+    elif end is not None and wheels[-1].min() > end:
+        left = trajectory.t[(wheels.min(axis=1) > end).argmax()]
+        yield RideWarning(
+            f"The points of the profile end at x = {end:.4g} m; all wheels were past that at t = {left:.2f} s",
+            "From there on the road is level. Figures that count this stretch too are too small: end the run there.",
         )

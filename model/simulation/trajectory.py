@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 from io import BytesIO, StringIO
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 from zipfile import BadZipFile
 
 import numpy as np
@@ -18,7 +18,11 @@ from model.dynamics.vehicle import System, build_system, kinetic_energy
 from model.files import write_whole
 from model.simulation.peaks import PEAK_NAMES, Peaks, sampled_peaks
 
+if TYPE_CHECKING:
+    from model.road.road import Road
+
 LARGEST = 1e50  # of a file's numbers: far above any run's, and their fourth powers can still be added up
+FASTEST = 100.0  # m/s: no run comes further in its time; a file's numbers may be anything
 LONGEST_TEXT = 300  # characters of a file's status and advice
 
 
@@ -79,6 +83,14 @@ class Trajectory:
         turned_over = kinetic[:1].sum() + np.abs(np.diff(kinetic)).sum() + np.abs(np.diff(gravity)).sum()
         gained = kinetic + gravity - self.work
         return float(np.abs(gained - gained[:1]).max() / turned_over) if turned_over > 0 else 0.0
+
+    @property
+    def road(self) -> Road:
+        """The road under this run, as far as its wheels came: further than asked for where it rolled away downhill."""
+        from model.road.road import SPARE, build_road  # here: Numba takes a third of a second
+
+        furthest = FASTEST * self.config.simulation.duration
+        return build_road(self.config, min(float(self.q[..., 0].max(initial=0.0)), furthest) + SPARE)
 
     @property
     def complete(self) -> bool:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from model import load_config, simulate
+from model.analysis.energy import energy_balance
 from model.analysis.ride import (
     Row,
     comparison,
@@ -21,6 +24,7 @@ from model.dynamics.vehicle import build_system
 from model.road.road import build_road
 from model.simulation.trajectory import RunStatistics, Trajectory
 
+FIELD = Path(__file__).parents[2] / "field"
 RATE = 100.0
 FLAT = Config().replace({"road.type": "flat", "simulation.output_rate": RATE})
 
@@ -356,3 +360,30 @@ def test_a_rolling_wheel_of_the_papers_run_hardly_slips():
     k = np.searchsorted(run.t, 4.3217)
     low, high = np.sort(run.normal_load[[k - 1, k], 3])
     assert low <= states[3].normal_load <= high
+
+
+def profile(points: str) -> Config:
+    return FLAT.replace({"road.type": "profile", "road.points": points})
+
+
+def test_a_profile_that_is_not_reached():
+    assert whats(standing(profile("500 0, 501 0.1, 600 0"))) == [
+        "The profile was not reached: it begins at x = 500 m, the wheels came to 1.75 m"
+    ]
+    assert whats(standing(profile("0 0, 501 0, 600 0.1"))) == []
+
+
+def test_a_profile_that_ends_under_way():
+    run = simulate(load_config(FIELD / "profile_runs_out.yaml"))
+    assert whats(run)[0] == "The points of the profile end at x = 43 m; all wheels were past that at t = 10.78 s"
+    short = simulate(run.config.replace({"simulation.duration": 10}))
+    assert whats(short) == []
+
+
+def test_who_slides_away_is_judged_by_the_road_that_he_slid_on():
+    """On ice, much further than the speed to be kept would lead."""
+    run = simulate(load_config(FIELD / "icy_descent.yaml"))
+    assert run.q[-1, 0, 0] > build_road(run.config).reach
+    assert whats(run) == []
+    assert penetration(run).max() == pytest.approx(0.015, abs=0.002)
+    assert energy_balance(run).closing_error < 0.01
