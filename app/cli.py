@@ -308,38 +308,42 @@ def _interrupt() -> Iterator[Callable[[], bool]]:
 def _report(trajectory: Trajectory) -> None:
     from model.analysis.ride import summary, warnings
 
-    figures = summary(trajectory)
-    output.print(_load_table(figures))
-    output.print(_figure_table(trajectory, figures))
+    of = summary(trajectory)
+    output.print(_load_table(of))
+    output.print(_figure_table(trajectory, of))
     for warning in warnings(trajectory):
         _say(f"Warning: {warning}", style="yellow")
 
 
-def _load_table(figures: Summary) -> Table:
+def _load_table(of: Summary) -> Table:
     table = Table("Wheel", title="Normal load, N", title_justify="left")
     for heading in ("min", "mean", "max"):
         table.add_column(heading, justify="right")
-    for name, *loads in zip(figures.names, figures.load_min, figures.load_mean, figures.load_max, strict=True):
+    for name, *loads in zip(of.names, of.load_min, of.load_mean, of.load_max, strict=True):
         table.add_row(name, *(f"{load:.0f}" for load in loads))
     return table
 
 
-def _figure_table(trajectory: Trajectory, figures: Summary) -> Table:
-    work = trajectory.statistics
+def _figure_table(trajectory: Trajectory, of: Summary) -> Table:
+    from model.analysis.figures import AIR_TIME, FIGURES, WEIGHTED, figures_by_name
+    from model.analysis.signals import WHOLE
+
     table = Table(show_header=False, box=None, pad_edge=False)
-    for what, value in (
-        ("Vertical acceleration of the hull, rms", f"{figures.acceleration_rms:.4g} m/s²"),
-        ("Vertical acceleration of the hull, peak", f"{figures.acceleration_peak:.4g} m/s²"),
-        ("Weighted acceleration at the seat", f"{figures.seat.total:.4g} m/s², {figures.seat.reaction}"),
-        ("Absorbed power at the seat", f"{figures.seat.absorbed_power:.3g} W"),
-        ("Mean share of imaginary wheels in the load", f"{100 * figures.imaginary_share:.1f} %"),
-        ("Constraint drift, largest", f"{1e6 * figures.drift:.3g} µm"),
+    values = figures_by_name(of)
+    for figure in FIGURES:
+        value = values[figure.name]
+        words = f", {of.seat.reaction}" if figure is WEIGHTED and of.seat is not None else ""
+        worst = f", {'all road wheels' if figure is AIR_TIME else 'worst wheel'}" if figure.per_wheel else ""
+        table.add_row(figure.label + worst, "–" if value is None else f"{value:.4g} {figure.unit}{words}")
+    table.add_row("Figures taken", f"{of.window.why}; {WHOLE}")
+    work = trajectory.statistics
+    for what, text in (
         ("Steps (rejected)", f"{work.steps} ({work.rejected_steps})"),
         ("Simulated time", f"{trajectory.t[-1]:g} s"),
         ("Time taken", f"{work.seconds:.3f} s"),
-        ("Real-time factor", f"{figures.real_time_factor:.3g}"),
+        ("Real-time factor", f"{of.real_time_factor:.3g}"),
     ):
-        table.add_row(what, value)
+        table.add_row(what, text)
     return table
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from model.analysis.ride import Row
+from model.analysis.figures import Row
 
 NONE = "–"  # where there is no figure
 

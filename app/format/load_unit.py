@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from model.analysis.ride import LOAD_PEAK, Row, comparison
+from model.analysis.figures import LOAD_PEAK, Row, comparison
 from model.dynamics.vehicle import System
 from model.simulation.trajectory import Trajectory
 

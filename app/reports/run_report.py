@@ -19,12 +19,14 @@ from app.plots.spectrum import LEAST_SAMPLES, Mark, named, spectrum_plot
 from app.reports.drawings import LIGHT_LOOK, WIDTH, Drawing, Look, plots_drawing
 from app.reports.html_page import document, picture, wide_table
 from app.reports.side_view import draw_side_view, highest_load
-from app.tabs.comfort import COMFORT_FIGURES, PLACES
+from app.tabs.comfort import COMFORT_FIGURES, PLACES, ComfortFigure
 from app.tabs.modes import NOTE, moving
 from app.tabs.trust import balances, drift, work
-from model.analysis.comfort import ride_comfort
+from model.analysis.comfort import Comfort, ride_comfort
+from model.analysis.figures import WHEEL_FIGURES, comparison
 from model.analysis.modes import Modes, vehicle_modes
-from model.analysis.ride import WHEEL_FIGURES, comparison, warnings
+from model.analysis.ride import warnings
+from model.analysis.signals import WHOLE, window
 from model.analysis.spectrum import excitation
 from model.config.config import Config, dump_config
 from model.config.parameters import GROUPS, NOTES, PARAMETER, Value
@@ -147,17 +149,20 @@ def _wheels(run: Trajectory) -> Html:
 
 
 def _comfort(run: Trajectory) -> Html:
-    felt = [(place, ride_comfort(run, point(run.config))) for place, point in PLACES]
+    taken = window(run)
+    felt = [(place, ride_comfort(run, point(run.config), taken)) for place, point in PLACES]
     rows = [
-        [f"{figure.name}, {figure.unit}".strip(", "), *(_number(figure.value(of)) for _, of in felt), figure.meaning]
+        [f"{figure.name}, {figure.unit}".strip(", "), *(_number(figure, of) for _, of in felt), figure.meaning]
         for figure in COMFORT_FIGURES
     ]
-    words = ["In words", *(of.reaction for _, of in felt), "of ISO 2631-1, the harsher one where two apply"]
-    return wide_table(["", *(place for place, _ in felt), ""], [*rows, words], "facts")
+    reactions = (NONE if of is None else of.reaction for _, of in felt)
+    words = ["In words", *reactions, "of ISO 2631-1, the harsher one where two apply"]
+    note = element("p", f"Taken {taken.why}, like all means on this page; {WHOLE}.")
+    return joined((wide_table(["", *(place for place, _ in felt), ""], [*rows, words], "facts"), note))
 
 
-def _number(value: float | None) -> str:
-    return NONE if value is None else figure_text(value)
+def _number(figure: ComfortFigure, of: Comfort | None) -> str:
+    return NONE if of is None else figure_text(figure.value(of))
 
 
 def _modes(modes: Modes) -> Html:

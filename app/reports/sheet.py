@@ -17,6 +17,7 @@ from app.reports.sheet_page import ALARM, GREY, HEIGHT, INK, LOOK, MARGIN, WIDTH
 from app.reports.sheet_tables import Tables
 from app.reports.side_view import draw_side_view, highest_load
 from model.analysis.ride import warnings
+from model.analysis.signals import window
 from model.simulation.trajectory import Trajectory, wheel_names
 
 LEFT, RIGHT = 5.25, 5.2  # inches, like all lengths: widths of the columns, picture and plots; tables
@@ -65,9 +66,9 @@ def compose(
     _plots(sheet, trajectory, baseline, palette, time)
     colours = dict(zip(wheel_names(trajectory.system), palette.wheels, strict=True))
     tables = Tables(sheet, WIDTH - MARGIN - RIGHT, TOP - 0.06, BOTTOM, RIGHT)
-    tables.draw(
-        comparison_rows(trajectory, baseline), colours, trajectory.config, None if baseline is None else baseline.config
-    )
+    reference = None if baseline is None else baseline.config
+    rows = comparison_rows(trajectory, baseline)
+    tables.draw(rows, window(trajectory), colours, trajectory.config, reference)
     _foot(sheet, trajectory)
     return sheet
 

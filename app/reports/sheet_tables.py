@@ -8,7 +8,8 @@ from app.format.differences import change_text, row_texts
 from app.format.load_unit import heading
 from app.format.parameters import value_text
 from app.reports.sheet_page import BAND, GREY, MARKED, Sheet, plain
-from model.analysis.ride import AIR_TIME, LOAD_PEAK, LOAD_RMS, TRAVEL, Row
+from model.analysis.figures import AIR_TIME, DOSE, LOAD_PEAK, LOAD_RMS, SHOCK, TRANSIENT, TRAVEL, Row
+from model.analysis.signals import Window
 from model.config.config import Config
 from model.config.parameters import NOTES, PARAMETER, Parameter
 
@@ -17,9 +18,11 @@ LEAST_ROW = 0.125  # below which wheels are left out of the tables instead
 HEADINGS = 0.9  # height of what stands above and between the rows
 POINTS_PER_ROW = 48.0  # size of text for each inch of a row's height
 HEAD, SUBHEAD = 7.6, 6.1  # points
+RIDE = 0.35  # width of the word "Ride"
 NAMES = 0.3  # width of the wheels' names
 MOST = 999.0  # %: a larger change is not told in figures
 WHEEL_FIGURES = (LOAD_PEAK, LOAD_RMS, TRAVEL, AIR_TIME)  # for which there is room
+LEFT_OUT = {figure.label for figure in (SHOCK, DOSE, TRANSIENT)}  # for which there is none
 GAP = 0.2  # between the two columns of parameters
 
 
@@ -30,9 +33,12 @@ class Tables:
         self._sheet, self._x, self._width = sheet, x, width
         self._y, self._height = top, top - bottom
 
-    def draw(self, rows: list[Row], colours: dict[str, str], config: Config, baseline: Config | None) -> None:
-        """rows: the comparison of two runs, or of one with none; colours: CSS, by the names of the run's wheels."""
-        hull = [row for row in rows if not row.wheel]
+    def draw(
+        self, rows: list[Row], taken: Window, colours: dict[str, str], config: Config, baseline: Config | None
+    ) -> None:
+        """rows: the comparison of two runs, or of one with none; taken: the window of the run that is shown; colours:
+        CSS, by the names of its wheels."""
+        hull = [row for row in rows if not row.wheel and row.figure not in LEFT_OUT]
         wheels = {(row.figure, row.wheel): row for row in rows if row.wheel}
         reference = baseline or Config()
         values, before = config.values(), reference.values()
@@ -47,7 +53,7 @@ class Tables:
         self._size = self._row * POINTS_PER_ROW
 
         compared = baseline is not None
-        self._hull_table(hull, compared)
+        self._hull_table(hull, taken, compared)
         self._wheel_table(told, wheels, colours, compared)
         if len(told) < len(names):
             self._remark(f"Of {len(names)} wheels the first and last of each kind, and those with the largest figures.")
@@ -83,11 +89,13 @@ class Tables:
 
     # ── Ride figures ──
 
-    def _hull_table(self, rows: list[Row], compared: bool) -> None:
+    def _hull_table(self, rows: list[Row], taken: Window, compared: bool) -> None:
         heads = ("now", "baseline", "change") if compared else ("now",)
         ends = [self._x + self._width - 0.7 * k for k in reversed(range(len(heads)))]
         for end, head in zip(ends, heads, strict=True):
             self._sheet.write(end, self._y, head, SUBHEAD, color=GREY, ha="right")
+        words = f"means of {taken.start:.2f} to {taken.end:.2f} s"
+        self._sheet.write(self._x + RIDE, self._y, words, SUBHEAD, color=GREY)
         self._head("Ride")
         for row in rows:
             self._next()

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from app.format.differences import figure_text
+from app.format.differences import NONE, figure_text
 from app.format.markup import Content, Html, cell, element, page, table, words_html
 from app.tabs.comparison import cells
-from model.analysis.comfort import POWER_LIMIT, Comfort, ride_comfort
-from model.analysis.ride import Row
-from model.analysis.signals import CENTRE_OF_MASS, seat
+from model.analysis.comfort import MOST_CREST, POWER_LIMIT, Comfort, ride_comfort
+from model.analysis.figures import DOSE, POWER, SHOCK, TRANSIENT, WEIGHTED, Row, percent
+from model.analysis.ride import figure_warnings
+from model.analysis.signals import CENTRE_OF_MASS, same_window, seat, window
 from model.simulation.trajectory import Trajectory
 
 LEAST = 1e-3  # of all figures: if the baseline's is smaller, a change in % means nothing
@@ -28,43 +29,50 @@ class ComfortFigure(NamedTuple):
 
 COMFORT_FIGURES = (
     ComfortFigure(
-        "Up and down", "m/s²", "rms weighted by W_k of ISO 2631-1: 5 to 8 Hz count most", lambda of: of.vertical
+        "Up and down", WEIGHTED.unit, "rms weighted by W_k of ISO 2631-1: 5 to 8 Hz count most", lambda of: of.vertical
     ),
     ComfortFigure(
         "Fore and aft",
-        "m/s²",
+        WEIGHTED.unit,
         "rms weighted by W_d: 0.5 to 2 Hz count most",
         lambda of: of.fore_aft,
     ),
     ComfortFigure(
         "Both",
-        "m/s²",
+        WEIGHTED.unit,
         "root of the sum of their squares: what the words are about",
         lambda of: of.total,
     ),
     ComfortFigure(
         "Crest factor",
         "",
-        "peak of up and down / its rms: above 9, the rms says too little",
+        f"peak of up and down / its rms: above {MOST_CREST:g}, the rms says too little; use MTVV or VDV",
         lambda of: of.crest_factor,
     ),
     ComfortFigure(
-        "VDV", "m/s¹·⁷⁵", "dose of up and down: it shows jolts, and grows with time", lambda of: of.dose, True
+        "VDV", DOSE.unit, "dose of up and down: it shows jolts, and grows with time", lambda of: of.dose, True
     ),
     ComfortFigure(
         "MTVV",
-        "m/s²",
+        TRANSIENT.unit,
         "rms of the worst second of up and down",
         lambda of: of.transient,
     ),
     ComfortFigure(
+        "Shock",
+        SHOCK.unit,
+        "largest of up and down, not weighted, behind a low-pass of 30 Hz; 2.5 g is taken as the limit",
+        lambda of: of.shock,
+    ),
+    ComfortFigure(
         "Absorbed power",
-        "W",
+        POWER.unit,
         f"by a sitting person (Pradko and Lee); {POWER_LIMIT:g} W is taken as the most that crews bear for long",
         lambda of: of.absorbed_power,
     ),
 )
-PLACES = (("Driver's seat", seat), ("Centre of mass", lambda config: CENTRE_OF_MASS))
+SEAT = "Driver's seat"
+PLACES = ((SEAT, seat), ("Centre of mass", lambda config: CENTRE_OF_MASS))
 
 
 def comfort_headline(run: Trajectory) -> str:
@@ -72,44 +80,51 @@ def comfort_headline(run: Trajectory) -> str:
     if not len(run.t):
         return ""
     felt = ride_comfort(run, seat(run.config))
+    if felt is None:
+        words = f"Driver's seat: {NONE} (too few samples: {run.config.simulation.output_rate:g} a second)"
+        return str(element("div", words, class_="trackride-comfort"))
     power = element(
         "span",
         f"{figure_text(felt.absorbed_power)} W",
         class_="bad" if felt.absorbed_power > POWER_LIMIT else None,
     )
     seat_words = "Driver's seat: ", element("b", felt.reaction), f", {figure_text(felt.total)} m/s² weighted · "
-    return str(element("div", *seat_words, power, " absorbed", class_="trackride-comfort"))
+    alarms = ["run too short"] if felt.window.shortfall else []
+    if felt.crest_factor is not None and felt.crest_factor > MOST_CREST:
+        alarms.append(f"crest factor {figure_text(felt.crest_factor)}")
+    said = (part for alarm in alarms for part in (" · ", element("span", alarm, class_="bad")))
+    return str(element("div", *seat_words, power, " absorbed", *said, class_="trackride-comfort"))
 
 
 def comfort_page(run: Trajectory, baseline: Trajectory | None = None) -> str:
-    """HTML of all figures at both places, now and of the baseline, and what they mean."""
+    """HTML of all figures at both places, now and of the baseline, what they are taken from and what they mean."""
     if not len(run.t):
         return ""
     other = baseline if baseline is not None and len(baseline.t) else None
-    tables = []
+    taken = window(run)
+    tables, felt_by_driver = [], None
     for place, point in PLACES:
-        felt = ride_comfort(run, point(run.config))
-        before = None if other is None else ride_comfort(other, point(other.config))
-        same_length = before is not None and other is not None and run.t[-1] - felt.since == other.t[-1] - before.since
-        tables.append(_table(place, felt, before, same_length))
-    stretch = (
-        f"From {felt.since:.1f} s on, when the start has died away" if felt.since > run.t[0] else "Over the whole run"
-    )
+        felt = ride_comfort(run, point(run.config), taken)
+        if place == SEAT:
+            felt_by_driver = felt
+        if felt is not None:
+            tables.append(_table(place, felt, None if other is None else ride_comfort(other, point(other.config))))
+    cautions = (element("p", str(each), class_="bad") for each in figure_warnings(run.config, taken, felt_by_driver))
     words = (
-        "vertical and horizontal, not turned with the hull. The words are those of ISO 2631-1; where two apply, "
-        "the harsher one."
+        f"Taken {taken.why}; vertical and horizontal, not turned with the hull. The words are those of ISO 2631-1; "
+        "where two apply, the harsher one."
     )
     meanings = (
         element("li", element("b", figure.name), ": ", words_html(figure.meaning), ".") for figure in COMFORT_FIGURES
     )
-    return page(element("h4", "Ride comfort"), *tables, element("p", f"{stretch}; {words}"), element("ul", *meanings))
+    return page(element("h4", "Ride comfort"), *cautions, *tables, element("p", words), element("ul", *meanings))
 
 
-def _table(place: str, now: Comfort, baseline: Comfort | None, same_length: bool) -> Html:
+def _table(place: str, now: Comfort, baseline: Comfort | None) -> Html:
     compared = baseline is not None
     lines: list[list[Content]] = []
     for figure in COMFORT_FIGURES:
-        row = _row(figure, now, baseline, same_length)
+        row = _row(figure, now, baseline)
         lines.append([f"{row.figure}, {row.unit}" if row.unit else row.figure, *cells(row, compared)])
     words = [now.reaction] if baseline is None else [now.reaction, baseline.reaction, ""]
     lines.append(["In words", *(cell(word, class_="words") for word in words)])
@@ -117,15 +132,10 @@ def _table(place: str, now: Comfort, baseline: Comfort | None, same_length: bool
     return table(heads, lines, "trackride-figures felt", titled=False)
 
 
-def _row(figure: ComfortFigure, now: Comfort, baseline: Comfort | None, same_length: bool) -> Row:
-    value = figure.value(now)
-    reference = None if baseline is None else figure.value(baseline)
-    means = value is not None and reference is not None and reference >= LEAST and (same_length or not figure.grows)
-    return Row(
-        figure.name,
-        "",
-        figure.unit,
-        value,
-        reference,
-        100 * (value / reference - 1) if means and value is not None and reference is not None else None,
-    )
+def _row(figure: ComfortFigure, now: Comfort, baseline: Comfort | None) -> Row:
+    value, reference, change = figure.value(now), None, None
+    if baseline is not None:
+        reference = figure.value(baseline)
+        if not figure.grows or same_window(now.window, baseline.window):
+            change = percent(value, reference, LEAST)
+    return Row(figure.name, "", figure.unit, value, reference, change)

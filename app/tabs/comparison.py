@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from app.format.differences import NONE, change_text, row_texts
 from app.format.load_unit import heading
 from app.format.markup import Content, cell, heading_cell, joined, table
-from model.analysis.ride import AIR_TIME, LOAD_COEFFICIENT, LOAD_PEAK, LOAD_RMS, TRAVEL, Row
+from model.analysis.figures import AIR_TIME, LOAD_COEFFICIENT, LOAD_PEAK, LOAD_RMS, TRAVEL, Row
 
 PAIRS = (
     (LOAD_PEAK, AIR_TIME),

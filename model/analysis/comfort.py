@@ -1,23 +1,28 @@
 """How a ride feels: ISO 2631-1's weighted acceleration and doses, and the power that a sitting person absorbs.
 
 Accelerations are those along the world's axes at a point of the hull. The filters run over the whole run, which begins
-at rest; the figures are taken from the stretch that `steady_from` gives.
+at rest; the figures are taken from its window (signals.py).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 
-from model.analysis.signals import CENTRE_OF_MASS, Point, point_acceleration, steady, steady_from
+from model.analysis.signals import CENTRE_OF_MASS, Point, Window, point_acceleration, window
 from model.simulation.trajectory import Trajectory
 
+LEAST_RATE = 200.0  # samples a second below which there are no figures: the weighting reaches up to 100 Hz
 DECAY = 10.0  # s in which all filters have forgotten: the slowest, of 0.4 Hz, to 2e-8
 RUNNING = 1.0  # s of the running rms whose largest value is the MTVV
 FOOT = 0.3048  # m
+G = 9.80665  # m/s²
+SHOCK_LIMIT = 30.0  # Hz, of the low-pass behind which shocks are told
+FINER = 4  # times as many values as samples, among which the largest shock is sought
+MOST_CREST = 9.0  # crest factor above which the weighted rms tells too little, by ISO 2631-1, 6.2.1
 POWER_LIMIT = 6.0  # W that people put up with for long: the limit of the NATO reference mobility model
 
 # ISO 2631-1, annex C.2.3: reactions to weighted accelerations, from how much on, m/s². There the ranges overlap; here
@@ -38,12 +43,13 @@ Filter = Callable[[np.ndarray], np.ndarray]  # s = iω (K,), 1/s -> gain (K,), c
 class Comfort:
     """Figures of the ride at one point of the hull."""
 
-    since: float  # s, from when on they are taken
+    window: Window  # from which they are taken
     vertical: float  # m/s², rms weighted by W_k
     fore_aft: float  # m/s², rms weighted by W_d
     crest_factor: float | None  # of the vertical one, peak / rms; None where nothing moves
     dose: float  # VDV, m/s^1.75: (∫ a_w⁴ dt)^¼ of the vertical one; it grows with time
     transient: float  # MTVV, m/s²: largest running rms over a second of the vertical one
+    shock: float  # g: largest vertical acceleration in either direction, behind a low-pass of 30 Hz
     absorbed_power: float  # W, mean, of the vertical acceleration
 
     @property
@@ -62,21 +68,34 @@ def reaction(acceleration: float) -> str:
     return next(word for least, word in REACTIONS if acceleration >= least)
 
 
-def ride_comfort(trajectory: Trajectory, point: Point = CENTRE_OF_MASS) -> Comfort:
-    """The figures of a run of at least one sample, at a point of the hull."""
-    rate, counts = trajectory.config.simulation.output_rate, steady(trajectory)
+def ride_comfort(trajectory: Trajectory, point: Point = CENTRE_OF_MASS, taken: Window | None = None) -> Comfort | None:
+    """The figures of a run of at least one sample, at a point of the hull; None where it has too few samples a second.
+
+    taken: the run's window, where it is at hand.
+    """
+    rate = trajectory.config.simulation.output_rate
+    if rate < LEAST_RATE:
+        return None
+    taken = window(trajectory) if taken is None else taken
+    counts = taken.samples(trajectory.t)
     fore_aft, vertical = point_acceleration(trajectory, point).T
-    up = filtered(vertical, rate, W_K)[counts]
-    along = filtered(fore_aft, rate, W_D)[counts]
-    rms = float(np.sqrt(np.mean(up**2)))
+    length, along = _spectrum(fore_aft, rate)
+    up = _spectrum(vertical, rate)[1]
+    felt, pushed, power = (
+        np.fft.irfft(part * _gains(length, rate, gain), length)[: len(vertical)][counts]
+        for part, gain in ((up, W_K), (along, W_D), (up, absorption))
+    )
+    shock = np.fft.irfft(up * _gains(length, rate, low_pass), FINER * length)[: FINER * len(vertical)] * FINER
+    rms = float(np.sqrt(np.mean(felt**2)))
     return Comfort(
-        since=max(steady_from(trajectory), float(trajectory.t[0])),
+        window=taken,
         vertical=rms,
-        fore_aft=float(np.sqrt(np.mean(along**2))),
-        crest_factor=float(np.abs(up).max()) / rms if rms > 0 else None,
-        dose=float((np.sum(up**4) / rate) ** 0.25),
-        transient=float(running_rms(up, rate).max()),
-        absorbed_power=float(np.mean(filtered(vertical / FOOT, rate, absorption)[counts] ** 2)),
+        fore_aft=float(np.sqrt(np.mean(pushed**2))),
+        crest_factor=float(np.abs(felt).max()) / rms if rms > 0 else None,
+        dose=float((np.sum(felt**4) / rate) ** 0.25),
+        transient=float(running_rms(felt, rate).max()),
+        shock=float(np.abs(shock[FINER * counts.start : FINER * counts.stop]).max()) / G,
+        absorbed_power=float(np.mean(power**2)) / FOOT**2,
     )
 
 
@@ -86,9 +105,20 @@ def filtered(signal: np.ndarray, rate: float, gain: Filter) -> np.ndarray:
     The filter's own gain is applied to the signal's spectrum: exact up to half the rate, where a recursive filter of
     sampled values would bend.
     """
+    length, spectrum = _spectrum(signal, rate)
+    return np.fft.irfft(spectrum * _gains(length, rate, gain), length)[: len(signal)]
+
+
+def _spectrum(signal: np.ndarray, rate: float) -> tuple[int, np.ndarray]:
+    """Of a signal (N,) with zeros behind it in which all filters forget it: its new length, and the spectrum."""
     length = 2 ** int(np.ceil(np.log2(len(signal) + DECAY * rate)))
-    s = 2j * np.pi * np.fft.rfftfreq(length, 1 / rate)
-    return np.fft.irfft(np.fft.rfft(signal, length) * gain(s), length)[: len(signal)]
+    return length, np.fft.rfft(signal, length)
+
+
+@lru_cache(maxsize=8)
+def _gains(length: int, rate: float, gain: Filter) -> np.ndarray:
+    """What a filter does to each frequency of such a spectrum: runs of about the same length share it."""
+    return gain(2j * np.pi * np.fft.rfftfreq(length, 1 / rate))
 
 
 def running_rms(signal: np.ndarray, rate: float) -> np.ndarray:
@@ -115,6 +145,12 @@ W_D: Filter = partial(weighting, transition=2.0, step=False)  # along
 def absorption(s: np.ndarray) -> np.ndarray:
     """Pradko & Lee: from vertical acceleration, ft/s², to a value whose mean square is the power absorbed, W."""
     return 14.5 * s * (s + 44) / ((s + 63) * (s**2 + 24 * s + 750))
+
+
+def low_pass(s: np.ndarray) -> np.ndarray:
+    """Butterworth's of order 2, up to SHOCK_LIMIT."""
+    omega = 2 * np.pi * SHOCK_LIMIT
+    return omega**2 / _quadratic(s, omega, np.sqrt(0.5))
 
 
 def _quadratic(s: np.ndarray, omega: float, q: float) -> np.ndarray:

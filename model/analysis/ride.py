@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from model.analysis.comfort import Comfort, ride_comfort
-from model.analysis.signals import seat, steady
-from model.config.config import SineRoad
+from model.analysis.comfort import LEAST_RATE, MOST_CREST, Comfort, ride_comfort
+from model.analysis.signals import Window, seat, window
+from model.config.config import Config, SineRoad
 from model.dynamics.equilibrium import NoEquilibriumError, rest_pose
 from model.dynamics.vehicle import System
 from model.road.road import Road, profile_end, profile_start
@@ -24,64 +24,30 @@ IN_PHASE = 0.02  # how close to a whole number of waves the wheel gaps must come
 
 @dataclass(frozen=True)
 class Summary:
-    """Figures of a run. W wheels in the order of `names`, road wheels 1…n first; SI, radians."""
+    """Figures of a run. W wheels in the order of `names`, road wheels 1…n first; SI, radians.
+
+    What is smallest, largest or counted is so in the whole run; all else is taken from its window.
+    """
 
     names: list[str]
+    window: Window
+    duration: float  # s, of the whole run
     load_min: np.ndarray  # (W,) N
     load_mean: np.ndarray  # (W,) N
     load_max: np.ndarray  # (W,) N
+    load_rms: np.ndarray  # (W,) N
     load_coefficient: np.ndarray  # (W,) dynamic load coefficient, 0…; see there
     air_time: np.ndarray  # (W,) s without load
     travel_down: np.ndarray  # (n,) m, lowest wheel centre relative to the hull, from the static pose; ≤ 0
     travel_up: np.ndarray  # (n,) m, highest; ≥ 0
-    acceleration_rms: float  # m/s², vertical, of the hull's centre of mass, over the whole run
+    acceleration_rms: float  # m/s², vertical, of the hull's centre of mass
     acceleration_peak: float  # m/s², the largest in either direction
     pitch_low: float  # rad; the nose is up where it is positive
     pitch_high: float  # rad
-    seat: Comfort  # of the driver
+    seat: Comfort | None  # of the driver; None where there are too few samples a second
     imaginary_share: float  # mean over time of Σ load of imaginary wheels / Σ load of all
     drift: float  # m, by which joints were apart at worst
     real_time_factor: float  # simulated time / computing time
-
-
-class _Figure(NamedTuple):
-    """One figure of a comparison."""
-
-    label: str
-    unit: str
-    least: float  # a baseline smaller than this is as good as nothing: no change in percent
-
-
-ACCELERATION_RMS = _Figure("Vertical acceleration, rms", "m/s²", 1e-3)
-ACCELERATION_PEAK = _Figure("Vertical acceleration, peak", "m/s²", 1e-3)
-WEIGHTED = _Figure("Weighted acceleration at the seat", "m/s²", 1e-3)
-POWER = _Figure("Absorbed power at the seat", "W", 1e-3)
-PITCH = _Figure("Pitch, peak to peak", "°", 1e-3)
-IMAGINARY_SHARE = _Figure("Load on imaginary wheels", "%", 1e-2)
-LOAD_PEAK = _Figure("Peak load", "kN", 1e-3)
-LOAD_RMS = _Figure("Load, rms", "kN", 1e-3)
-LOAD_COEFFICIENT = _Figure("Dynamic load coefficient", "%", 1e-2)
-TRAVEL = _Figure("Suspension travel", "mm", 1e-2)
-AIR_TIME = _Figure("Time in the air", "s", 1e-9)
-HULL_FIGURES = (ACCELERATION_RMS, ACCELERATION_PEAK, WEIGHTED, POWER, PITCH, IMAGINARY_SHARE)
-WHEEL_FIGURES = (LOAD_PEAK, LOAD_RMS, LOAD_COEFFICIENT, TRAVEL, AIR_TIME)
-
-
-@dataclass(frozen=True)
-class Row:
-    """One figure of a run beside that of its baseline; a figure that a run does not have is None."""
-
-    figure: str
-    wheel: str  # R1…, I1…; empty for a figure of the whole vehicle
-    unit: str
-    now: float | None
-    baseline: float | None
-    change: float | None  # %, of the baseline; None where it means nothing
-    resolution: float = 0.0  # in the unit: finer differences mean nothing
-
-    @property
-    def label(self) -> str:
-        return f"{self.figure}, {self.wheel}" if self.wheel else self.figure
 
 
 @dataclass(frozen=True)
@@ -123,28 +89,47 @@ class RideWarning:
 
 def summary(trajectory: Trajectory) -> Summary:
     """The figures of a run of at least one sample."""
-    system, load = trajectory.system, trajectory.normal_load
+    system, taken = trajectory.system, window(trajectory)
+    counts = taken.samples(trajectory.t)
+    load = trajectory.normal_load[counts]
     travel = suspension_travel(trajectory)
-    acceleration = trajectory.a[:, system.chassis, 1]
     pitch = trajectory.q[:, system.chassis, 2]
     return Summary(
         names=wheel_names(system),
-        load_min=load.min(axis=0),
+        window=taken,
+        duration=float(trajectory.t[-1] - trajectory.t[0]),
+        load_min=trajectory.normal_load.min(axis=0),
         load_mean=load.mean(axis=0),
-        load_max=load.max(axis=0),
-        load_coefficient=dynamic_load_coefficient(trajectory),
-        air_time=(load <= 0).sum(axis=0) / trajectory.config.simulation.output_rate,
+        load_max=peak_load(trajectory),
+        load_rms=np.sqrt(np.mean(load**2, axis=0)),
+        load_coefficient=dynamic_load_coefficient(load, trajectory.static_load),
+        air_time=air_time(trajectory),
         travel_down=travel.min(axis=0),
         travel_up=travel.max(axis=0),
-        acceleration_rms=float(np.sqrt(np.mean(acceleration**2))),
-        acceleration_peak=float(np.abs(acceleration).max()),
+        acceleration_rms=float(np.sqrt(np.mean(trajectory.a[counts, system.chassis, 1] ** 2))),
+        acceleration_peak=peak_acceleration(trajectory),
         pitch_low=float(pitch.min()),
         pitch_high=float(pitch.max()),
-        seat=ride_comfort(trajectory, seat(trajectory.config)),
-        imaginary_share=imaginary_share(trajectory),
+        seat=ride_comfort(trajectory, seat(trajectory.config), taken),
+        imaginary_share=imaginary_share(load, system.n),
         drift=float(trajectory.constraint_residual.max()),
         real_time_factor=float(trajectory.t[-1]) / trajectory.statistics.seconds,
     )
+
+
+def peak_load(trajectory: Trajectory) -> np.ndarray:
+    """(W,) N: the largest load of each wheel."""
+    return trajectory.peaks.load
+
+
+def air_time(trajectory: Trajectory) -> np.ndarray:
+    """(W,) s for which each wheel has no load."""
+    return trajectory.peaks.air_time
+
+
+def peak_acceleration(trajectory: Trajectory) -> float:
+    """The largest vertical acceleration of the hull's centre of mass in either direction, m/s²."""
+    return float(trajectory.peaks.acceleration)
 
 
 def suspension_travel(trajectory: Trajectory) -> np.ndarray:
@@ -155,79 +140,28 @@ def suspension_travel(trajectory: Trajectory) -> np.ndarray:
         with suppress(NoEquilibriumError):
             static = rest_pose(system)[0]
         q = np.concatenate([static[None], q])
-    chassis = q[:, system.chassis, None]
-    x, y = np.moveaxis(q[:, system.road_wheels, :2] - chassis[..., :2], 2, 0)
-    height = np.cos(chassis[..., 2]) * y - np.sin(chassis[..., 2]) * x
+    hull_x, hull_y, pitch = q[:, system.chassis, :, None].swapaxes(0, 1)
+    x, y = q[:, system.road_wheels, 0] - hull_x, q[:, system.road_wheels, 1] - hull_y
+    height = np.cos(pitch) * y - np.sin(pitch) * x
     return height[-len(trajectory.t) :] - height[0]
 
 
-def imaginary_share(trajectory: Trajectory) -> float:
-    """Mean over time of Σ load of imaginary wheels / Σ load of all, while any wheel is on the ground; 0…1."""
-    total = trajectory.normal_load.sum(axis=1)
-    imaginary = trajectory.normal_load[:, trajectory.system.n :].sum(axis=1)
+def imaginary_share(load: np.ndarray, road_wheels: int) -> float:
+    """Mean over time of Σ load of imaginary wheels / Σ load of all, while any wheel is on the ground; 0…1.
+
+    load: (N, W) N, of so many road wheels and then of imaginary ones.
+    """
+    total, imaginary = load.sum(axis=1), load[:, road_wheels:].sum(axis=1)
     grounded = total > 0
     return float(np.mean(imaginary[grounded] / total[grounded])) if grounded.any() else 0.0
 
 
-def dynamic_load_coefficient(trajectory: Trajectory) -> np.ndarray:
-    """(W,) standard deviation of each wheel's load over the steady part of a run / its load at rest (Sweatman 1983).
+def dynamic_load_coefficient(load: np.ndarray, static_load: np.ndarray) -> np.ndarray:
+    """(W,) standard deviation of each wheel's load (N, W) / its load at rest (W,) (Sweatman 1983).
 
     0 where the load does not change; NaN for a wheel without load at rest.
     """
-    static = np.where(trajectory.static_load > 0, trajectory.static_load, np.nan)
-    return trajectory.normal_load[steady(trajectory)].std(axis=0) / static
-
-
-def comparison(now: Trajectory, baseline: Trajectory | None) -> list[Row]:
-    """The ride figures of a run, and of another beside them: the hull's first, then each wheel's, front first.
-
-    A change of the time in the air is None when the runs last differently long; it is counted in samples.
-    """
-    runs = [now] if baseline is None else [now, baseline]
-    sampling = max(1 / run.config.simulation.output_rate for run in runs)
-    present = _figures(now)
-    other = {} if baseline is None else _figures(baseline)
-    same_length = baseline is not None and now.t[-1] == baseline.t[-1]
-    rows = []
-    for figure, wheel in sorted({**present, **other}, key=_reading_order):
-        value, reference = present.get((figure, wheel)), other.get((figure, wheel))
-        change = None
-        if value is not None and reference is not None and reference >= figure.least:
-            change = 100 * (value / reference - 1)
-        if figure is AIR_TIME and not same_length:
-            change = None
-        resolution = sampling if figure is AIR_TIME else 0.0
-        rows.append(Row(figure.label, wheel, figure.unit, value, reference, change, resolution))
-    return rows
-
-
-def _reading_order(key: tuple[_Figure, str]) -> tuple[int, bool, int]:
-    figure, wheel = key
-    number = int(wheel[1:]) if wheel else 0
-    return (*HULL_FIGURES, *WHEEL_FIGURES).index(figure), wheel.startswith("I"), number
-
-
-def _figures(trajectory: Trajectory) -> dict[tuple[_Figure, str], float]:
-    """By figure and wheel, in the figures' units."""
-    of, n = summary(trajectory), trajectory.system.n
-    figures = {
-        (ACCELERATION_RMS, ""): of.acceleration_rms,
-        (ACCELERATION_PEAK, ""): of.acceleration_peak,
-        (WEIGHTED, ""): of.seat.total,
-        (POWER, ""): of.seat.absorbed_power,
-        (PITCH, ""): float(np.degrees(of.pitch_high - of.pitch_low)),
-        (IMAGINARY_SHARE, ""): 100 * of.imaginary_share,
-    }
-    for figure, names, values in (
-        (LOAD_PEAK, of.names, of.load_max / 1e3),
-        (LOAD_RMS, of.names, np.sqrt(np.mean(trajectory.normal_load**2, axis=0)) / 1e3),
-        (LOAD_COEFFICIENT, of.names, 100 * of.load_coefficient),
-        (TRAVEL, of.names[:n], 1e3 * (of.travel_up - of.travel_down)),
-        (AIR_TIME, of.names, of.air_time),
-    ):
-        known = ((name, float(value)) for name, value in zip(names, values, strict=True) if np.isfinite(value))
-        figures |= {(figure, name): value for name, value in known}
-    return figures
+    return load.std(axis=0) / np.where(static_load > 0, static_load, np.nan)
 
 
 def wheel_state(trajectory: Trajectory, wheel: int, time: float, road: Road | None = None) -> WheelState:
@@ -290,8 +224,15 @@ def penetration(trajectory: Trajectory, road: Road | None = None) -> np.ndarray:
 
 def warnings(trajectory: Trajectory, road: Road | None = None) -> list[RideWarning]:
     """What the reader of this run should know, each with what it means. road: another than the run's own."""
+    taken = window(trajectory)
+    felt = ride_comfort(trajectory, seat(trajectory.config), taken)
     of_profile = _profile_missed(trajectory) if road is None else ()
-    return [*motion_warnings(trajectory), *of_profile, *_wheels_sunk_deep(trajectory, road)]
+    return [
+        *motion_warnings(trajectory),
+        *of_profile,
+        *_wheels_sunk_deep(trajectory, road),
+        *figure_warnings(trajectory.config, taken, felt),
+    ]
 
 
 def motion_warnings(trajectory: Trajectory) -> list[RideWarning]:
@@ -303,26 +244,45 @@ def motion_warnings(trajectory: Trajectory) -> list[RideWarning]:
     ]
 
 
-def _arms_turned_far(trajectory: Trajectory) -> Iterator[RideWarning]:
-    q, system = trajectory.q, trajectory.system
-    turn = q[:, system.road_arms, 2] - q[:, [system.chassis], 2]
-    sample, arm = np.unravel_index(np.abs(turn).argmax(), turn.shape)
-    if abs(turn[sample, arm]) > ARM_LIMIT:
-        angle = np.degrees(turn[sample, arm])
+def figure_warnings(config: Config, taken: Window, felt: Comfort | None) -> Iterator[RideWarning]:
+    """Of a run whose figures are taken from a window, and whose comfort at the driver's seat is this."""
+    if taken.shortfall:
+        yield RideWarning(taken.shortfall, "Means, comfort and absorbed power would be others in a longer run.")
+    if felt is None:
         yield RideWarning(
-            f"Road arm {arm + 1} turned by {angle:+.3g}° (t = {trajectory.t[sample]:.2f} s)",
+            f"Comfort cannot be told from {config.simulation.output_rate:g} samples a second",
+            f"It needs the motion up to 100 Hz: set the output rate to {LEAST_RATE:g} 1/s or more.",
+        )
+    elif felt.crest_factor is not None and felt.crest_factor > MOST_CREST:
+        yield RideWarning(
+            f"The crest factor at the driver's seat is {felt.crest_factor:.1f}",
+            f"Above {MOST_CREST:g} the weighted acceleration tells too little (ISO 2631-1). Use MTVV, "
+            f"{felt.transient:.3g} m/s², or VDV, {felt.dose:.3g} m/s¹·⁷⁵, which tell jolts.",
+        )
+
+
+def _arms_turned_far(trajectory: Trajectory) -> Iterator[RideWarning]:
+    peaks = trajectory.peaks
+    turn, time = np.stack([peaks.arm_low, peaks.arm_high]), np.stack([peaks.arm_low_time, peaks.arm_high_time])
+    way, arm = np.unravel_index(np.abs(turn).argmax(), turn.shape)
+    if abs(turn[way, arm]) > ARM_LIMIT:
+        angle = np.degrees(turn[way, arm])
+        yield RideWarning(
+            f"Road arm {arm + 1} turned by {angle:+.3g}° (t = {time[way, arm]:.2f} s)",
             "A real arm would have hit a stop before 45°; the paper's has none. Give bump and rebound stops.",
         )
 
 
 def _wheels_sunk_deep(trajectory: Trajectory, road: Road | None) -> Iterator[RideWarning]:
-    depth = penetration(trajectory, road)
-    sample, wheel = np.unravel_index(depth.argmax(), depth.shape)
-    if depth[sample, wheel] > SINKING_LIMIT * trajectory.system.r:
+    depth, time = trajectory.peaks.depth, trajectory.peaks.depth_time
+    if trajectory.tracked is None:
+        sampled = penetration(trajectory, road)
+        depth, time = sampled.max(axis=0), trajectory.t[sampled.argmax(axis=0)]
+    wheel = int(depth.argmax())
+    if depth[wheel] > SINKING_LIMIT * trajectory.system.r:
         name = wheel_names(trajectory.system)[wheel]
         yield RideWarning(
-            f"Wheel {name} sank {1000 * depth[sample, wheel]:.3g} mm into the ground "
-            f"(t = {trajectory.t[sample]:.2f} s)",
+            f"Wheel {name} sank {1000 * depth[wheel]:.3g} mm into the ground (t = {time[wheel]:.2f} s)",
             "The contact law is meant for less than a tenth of the radius: take this load with care, "
             "or stiffen the ground.",
         )

@@ -2,16 +2,50 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from model.config.config import Config, RandomRoad, SineRoad, SumRoad
-from model.road.road import profile_of
+from model.config.config import Config, FlatRoad, ProfileRoad, RandomRoad, SimpleRoad, SineRoad, SumRoad
+from model.road.road import build_road, profile_of
 from model.simulation.trajectory import Trajectory
 
 SETTLING = 2.0  # s after the last wheel has come to the full waves, in which the start dies away
+SHORTEST = 2.5  # s of waves or of a measured profile from which figures can be told
+SETTLED = 1e-3  # of the hull's motion in its worst second: less to come is as good as rest
+BEYOND = 0.5  # of the time in which the hull settles: so much longer a run must go on for that time to be known…
+RESTING = 0.5  # … and so many seconds at least
+
+WHOLE = "peaks of loads and acceleration, pitch, travel and time in the air are those of the whole run"
 
 Point = tuple[float, float]  # forward and up from the hull's centre of mass, in the hull's frame, m
 CENTRE_OF_MASS: Point = (0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Window:
+    """The stretch of a run that its figures are taken from, all but those that WHOLE names."""
+
+    start: float  # s
+    end: float  # s
+    why: str  # "from 4.3 s on, when the start has died away"
+    shortfall: str = ""  # a sentence that says what the run is too short for; empty where it is long enough
+    goes_on: bool = True  # whether it would be longer in a longer run
+
+    @property
+    def length(self) -> float:
+        """s."""
+        return self.end - self.start
+
+    def samples(self, t: np.ndarray) -> slice:
+        """Those of a run with samples at t (N,), s, that belong to it: one at least."""
+        return slice(int(np.searchsorted(t, self.start)), int(np.searchsorted(t, self.end, side="right")))
+
+
+def same_window(*windows: Window) -> bool:
+    """Whether what grows with time may be compared: all as long as each other, or none that would go on."""
+    lengths = [taken.length for taken in windows]
+    return not any(taken.goes_on for taken in windows) or max(lengths) - min(lengths) < 1e-9
 
 
 def seat(config: Config) -> Point:
@@ -33,24 +67,75 @@ def point_acceleration(trajectory: Trajectory, point: Point = CENTRE_OF_MASS) ->
     return trajectory.a[:, hull, :2] + turning
 
 
-def steady_from(trajectory: Trajectory) -> float:
-    """When the last road wheel is on the full waves and the start has died away, s; at most half the run.
+def window(trajectory: Trajectory) -> Window:
+    """The stretch of a run of at least one sample that its figures are taken from.
 
-    Waves are those of a sine or random road, in a sum too. 0 on a road without them, where all there is to see is what
-    the start or an obstacle leaves behind.
+    Waves (sine or random, in a sum too) go on: from when the last road wheel is on the full waves and the start has
+    died away to the end of the run. An obstacle or a measured profile comes to an end: from the first wheel's contact
+    until the last wheel is off it and the hull has settled, so that a longer run has the same figures. A level road,
+    and a stretch of a drive, count as a whole.
     """
-    config, system = trajectory.config, trajectory.system
-    wheels, parts = config.vehicle.road_wheels, [config.road]
-    if isinstance(config.road, SumRoad):
-        parts = list(config.road.parts)
+    start, end = float(trajectory.t[0]), float(trajectory.t[-1])
+    if start > 0:
+        return Window(start, end, "over this stretch of the drive")
+    road = trajectory.config.road
+    parts: list[SimpleRoad] = list(road.parts) if isinstance(road, SumRoad) else [road]
+    if any(isinstance(part, SineRoad | RandomRoad) for part in parts):
+        return _on_waves(trajectory, parts)
+    uneven = build_road(trajectory.config).uneven
+    if uneven is None:
+        return Window(start, end, "over the whole run")
+    measured = any(isinstance(part, ProfileRoad) for part in parts)
+    several = sum(not isinstance(part, FlatRoad) for part in parts) > 1
+    return _over(trajectory, uneven, "profile" if measured else "obstacles" if several else "obstacle", measured)
+
+
+def _on_waves(trajectory: Trajectory, parts: list[SimpleRoad]) -> Window:
+    """In a run that is too short at least half of it."""
+    wheels, end = trajectory.config.vehicle.road_wheels, float(trajectory.t[-1])
     waves = [part for part in parts if isinstance(part, SineRoad | RandomRoad)]
-    if not waves:
-        return 0.0
     full = max(profile_of(wave, wheels.x[0], wheels.radius, 0.0).pieces[-1].nodes[0] for wave in waves)
-    arrival = (full - wheels.x[-1]) / system.v_ref + SETTLING
-    return float(min(arrival, trajectory.t[-1] / 2))
+    steady = float((full - wheels.x[-1]) / trajectory.system.v_ref + SETTLING)
+    if end - steady >= SHORTEST:
+        return Window(steady, end, f"from {steady:.1f} s on, when the start has died away")
+    start = min(steady, end / 2)
+    shortfall = f"The start has died away only after {steady:.1f} s: let the run last {steady + SHORTEST:.0f} s or more"
+    return Window(start, end, f"from {start:.1f} s on", shortfall)
 
 
-def steady(trajectory: Trajectory) -> np.ndarray:
-    """(N,) whether a sample belongs to the stretch that ride figures are taken from."""
-    return trajectory.t >= steady_from(trajectory)
+def _over(trajectory: Trajectory, uneven: tuple[float, float], name: str, measured: bool) -> Window:
+    """Over something that is uneven between two x, m, and has a name; measured: a run need not come to its end."""
+    t, system = trajectory.t, trajectory.system
+    last = float(t[-1])
+    wheels = trajectory.q[:, system.wheel, 0]
+    come = wheels.max(axis=1) + system.r >= uneven[0]
+    if not come.any():
+        return Window(float(t[0]), last, "over the whole run", f"The run ends before a wheel comes to the {name}")
+    first = int(come.argmax())
+    start = float(t[first])
+    began = f"from {start:.2f} s, when the first wheel comes to the {name},"
+    off = len(t) - int((wheels.min(axis=1) - system.r <= uneven[1])[::-1].argmax())
+    if off == len(t):
+        shortfall = "" if measured and last - start >= SHORTEST else f"The run ends while wheels are on the {name}"
+        return Window(start, last, f"{began} to the end of the run", shortfall)
+    settled = max(off, _settled(trajectory, first))
+    end = float(t[settled])
+    known = last - end >= max(BEYOND * (end - float(t[off])), RESTING)
+    shortfall = "" if known else f"The run ends before the hull has settled behind the {name}"
+    words = f"{began} to {end:.2f} s, when the last is off it and the hull has settled"
+    return Window(start, end, words, shortfall, goes_on=not known)
+
+
+def _settled(trajectory: Trajectory, first: int) -> int:
+    """The sample at which the hull has settled: what is still to come of its rising, falling and pitching, by its
+    kinetic energy summed over time, is less than SETTLED of that in the worst second since the sample `first`.
+
+    A sum over time, other than the largest value in it, changes little where the run changes little.
+    """
+    system = trajectory.system
+    v = trajectory.v[first:, system.chassis, 1:]
+    inertia = np.array([system.mass[system.chassis], system.inertia[system.chassis]])
+    sums = np.concatenate([[0.0], np.cumsum(v**2 @ inertia)])
+    second = min(round(trajectory.config.simulation.output_rate), len(v))
+    worst = (sums[second:] - sums[:-second]).max()
+    return first + int((sums[-1] - sums[1:] <= SETTLED * worst).argmax())

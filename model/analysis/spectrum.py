@@ -1,10 +1,10 @@
-"""Where the hull is shaken: spectra of its vertical acceleration over the steady part of a run."""
+"""Where the hull is shaken: spectra of its vertical acceleration over the window of a run (signals.py)."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from model.analysis.signals import CENTRE_OF_MASS, Point, point_acceleration, steady
+from model.analysis.signals import CENTRE_OF_MASS, Point, point_acceleration, window
 from model.config.config import Config, SineRoad
 from model.simulation.trajectory import Trajectory
 
@@ -60,7 +60,7 @@ def excitation(config: Config) -> float | None:
 
 
 def _signal(trajectory: Trajectory, point: Point) -> np.ndarray:
-    return point_acceleration(trajectory, point)[steady(trajectory), 1]
+    return point_acceleration(trajectory, point)[window(trajectory).samples(trajectory.t), 1]
 
 
 def _hann(count: int) -> np.ndarray:

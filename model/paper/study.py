@@ -76,7 +76,7 @@ class Figures:
     resolution: float  # Hz, of that spectrum: 1 / length of the signal
     harmonics: tuple[float, ...]  # m/s², amplitudes at v/λ and its multiples
     acceleration_rms: float  # m/s²
-    share: float  # of the load on imaginary wheels, mean over the whole run
+    share: float  # of the load on imaginary wheels, mean over time
     traction_share: float  # of mean |traction| on imaginary wheels
     load_peak: float  # N, highest of all wheels
     air: float  # part of the time in the air, of the road wheel that is there longest
@@ -185,7 +185,7 @@ def figures_of(run: Trajectory, frequency: float) -> Figures:
         resolution=rate / len(acceleration),
         harmonics=tuple(2 * np.abs((turns @ acceleration) / len(acceleration))),
         acceleration_rms=float(np.sqrt(np.mean(acceleration**2))),
-        share=imaginary_share(run),
+        share=imaginary_share(load, n),
         traction_share=float(traction[:, n:].sum() / traction.sum()),
         load_peak=float(load.max()),
         air=float((load[:, :n] <= 0).mean(axis=0).max()),

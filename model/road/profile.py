@@ -9,6 +9,8 @@ import numpy as np
 
 from model.road.table import SAME, quintics
 
+LEVEL = 1e-9  # of heights, m, slopes and curvatures, 1/m: smaller ones are none
+
 Derivatives = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
@@ -24,6 +26,22 @@ class Profile(NamedTuple):
 
     pieces: list[Piece]
     period: float = 0.0  # m, by which the last piece repeats, joining itself smoothly; 0: it does not
+
+
+def uneven(profile: Profile) -> tuple[float, float] | None:
+    """x from where to where a profile's pieces are not level, m; None where they are all level at one height."""
+    found: list[float] = []
+    height = None
+    for piece in profile.pieces:
+        h, h1, h2 = piece.derivatives(piece.nodes)
+        if height is not None and abs(h[0] - height) > LEVEL:
+            found.append(float(piece.nodes[0]))
+        bare = (np.abs(h1) < LEVEL) & (np.abs(h2) < LEVEL)
+        rough = np.flatnonzero(~(bare[:-1] & bare[1:] & (np.abs(np.diff(h)) < LEVEL)))
+        if len(rough):
+            found += [float(piece.nodes[rough[0]]), float(piece.nodes[rough[-1] + 1])]
+        height = h[-1]
+    return (min(found), max(found)) if found else None
 
 
 def level(low: float, high: float, height: float = 0.0) -> Piece:

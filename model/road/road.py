@@ -19,7 +19,7 @@ from model.config import config as configuration
 from model.config.config import Config
 from model.road import shapes
 from model.road.nearest_point import RoadTable, nearest_points
-from model.road.profile import Derivatives, Piece, Profile
+from model.road.profile import Derivatives, Piece, Profile, uneven
 from model.road.random_road import random_profile
 from model.road.table import CELLS_PER_RADIUS, tabulate, tame_parts
 
@@ -63,6 +63,11 @@ class Road:
             x = np.array([0.0, 1.0])
             rows, period = [(x, *self.derivatives(x))], 0.0
         return tabulate(rows, period, self.radius)
+
+    @cached_property
+    def uneven(self) -> tuple[float, float] | None:
+        """x from where to where it is not level, m; None where it is level everywhere."""
+        return uneven(self.profile)
 
     def derivatives(self, x: np.ndarray) -> Derivatives:
         """h, h′, h″ at x (any shape), exact; at a corner, those of the piece ahead."""

@@ -11,7 +11,7 @@ from playwright.sync_api import Download, expect
 
 from app.format.differences import change_text, row_texts
 from model import load_config, simulate
-from model.analysis.ride import AIR_TIME, comparison
+from model.analysis.figures import AIR_TIME, comparison
 from model.simulation.trajectory import Trajectory
 from tests.browser.driver import DOWNLOAD, Explorer
 

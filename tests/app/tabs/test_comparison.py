@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from app.tabs.comparison import comparison_table
-from model.analysis.ride import comparison
+from model.analysis.figures import comparison
 from model.config.config import load_config
 from tests.app.conftest import make_run
 

@@ -125,8 +125,8 @@ def test_the_ride_in_a_line_and_in_a_table(run: Trajectory) -> None:
     assert all(figure.name in text for figure in COMFORT_FIGURES)
     assert cells_of(text, "Both, m/s²") == [[figure_text(felt.total)], [figure_text(hull.total)]]
     assert cells_of(text, "In words") == [["fairly uncomfortable"], ["a little uncomfortable"]]
-    assert "From 4.8 s on" in text
-    assert "Over the whole run" in comfort_page(make_run(PAPER.replace({"road.type": "flat"})))
+    assert "Taken from 4.8 s on, when the start has died away" in text
+    assert "Taken over the whole run" in comfort_page(make_run(PAPER.replace({"road.type": "flat"})))
 
 
 def test_the_ride_beside_a_baselines(run: Trajectory) -> None:
@@ -141,6 +141,22 @@ def test_the_ride_beside_a_baselines(run: Trajectory) -> None:
     assert cells_of(text, "VDV, m/s¹·⁷⁵")[0][2] == "–"  # the steady part is longer at another speed
     assert cells_of(comfort_page(run, run), "VDV, m/s¹·⁷⁵")[0][2] == "0 %"
     assert cells_of(comfort_page(run, make_run(samples=0)), "Both, m/s²")[0] == cells_of(text, "Both, m/s²")[0][1:2]
+
+
+def test_what_one_must_know_of_the_ride_figures_stands_beside_them() -> None:
+    half_round = load_config("half_round")
+    short = simulate(half_round.replace({"simulation.duration": 2}))
+    assert '<span class="bad">run too short</span>' in comfort_headline(short)
+    assert "The run ends before the hull has settled behind the obstacle" in comfort_page(short)
+    slow = simulate(half_round.replace({"simulation.output_rate": 20}))
+    assert "uncomfortable" not in comfort_headline(slow)
+    assert "20 a second" in comfort_headline(slow)
+    assert "set the output rate to 200 1/s or more" in comfort_page(slow)
+    assert "In words" not in comfort_page(slow)
+    jolt = simulate(PAPER.replace({"road.type": "flat"}))
+    jolt.a[1000, 0, 1] = 30.0
+    assert '<span class="bad">crest factor' in comfort_headline(jolt)
+    assert "Use MTVV" in comfort_page(jolt)
 
 
 def test_a_run_without_samples_has_no_comfort() -> None:
@@ -220,7 +236,7 @@ def test_what_breaks_the_laws_is_marked(run: Trajectory) -> None:
 def test_warnings_say_what_they_mean(run: Trajectory) -> None:
     q = run.q.copy()
     q[50, run.system.road_arms.start, 2] = 1.0
-    text = trust_html(replace(run, q=q))
+    text = trust_html(replace(run, q=q, tracked=None))
     assert "Road arm 1 turned by" in text
     assert "Give bump and rebound stops" in text
 

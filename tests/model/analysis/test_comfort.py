@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.signal
 
 from model import load_config, simulate
 from model.analysis.comfort import (
@@ -20,7 +21,7 @@ from model.analysis.comfort import (
     ride_comfort,
     running_rms,
 )
-from model.analysis.signals import point_acceleration, seat, steady, steady_from
+from model.analysis.signals import point_acceleration, seat, window
 from tests.model.analysis.test_ride import standing
 from tests.model.support import FLAT, PAPER
 
@@ -149,9 +150,10 @@ def test_only_the_steady_part_counts_but_the_filter_knows_the_rest():
     early = np.zeros_like(run.a)
     early[(run.t > 0.5) & (run.t < 1.5)] = 30.0
     quiet, disturbed = ride_comfort(run), ride_comfort(replace(run, a=run.a + early))
-    assert quiet.since == steady_from(run) > 4
+    assert quiet.window == window(run)
+    assert quiet.window.start > 4
     assert disturbed.vertical == pytest.approx(quiet.vertical, rel=0.02)
-    weighted = filtered(run.a[:, 0, 1], 200, W_K)[steady(run)]
+    weighted = filtered(run.a[:, 0, 1], 200, W_K)[run.t >= quiet.window.start]
     assert quiet.vertical == np.sqrt(np.mean(weighted**2))
 
 
@@ -176,6 +178,35 @@ def test_the_driver_sits_where_the_configuration_says_and_feels_the_pitching():
     assert seat(PAPER.replace({"vehicle.seat.x": -1, "vehicle.seat.y": 0.4})) == (-1, 0.4)
     run = simulate(load_config("paper"))
     assert ride_comfort(run, seat(run.config)).vertical > 2 * ride_comfort(run).vertical
+
+
+def test_a_shock_is_the_largest_acceleration_behind_the_low_pass():
+    """Sampled ten times as finely, with SciPy's filter."""
+    rate, t = 2000, np.arange(20000) / 2000
+    kick = 15 * np.exp(-(((t - 5.0012) / 0.02) ** 2)) * np.cos(120 * (t - 5))
+    low_pass = scipy.signal.butter(2, 30, fs=rate)
+    expected = np.abs(scipy.signal.lfilter(*low_pass, kick)).max() / 9.80665
+    run = standing(FLAT, samples=2000)
+    run.a[:, 0, 1] = kick[::10]
+    assert ride_comfort(run).shock == pytest.approx(expected, rel=0.005)
+    run.a[:, 0, 1] *= -1
+    assert ride_comfort(run).shock == pytest.approx(expected, rel=0.005)
+
+
+def test_a_shock_hardly_depends_on_the_sample_rate():
+    config = load_config("half_round").replace({"drive.speed_kmh": 30})
+    few, many = (
+        ride_comfort(simulate(config.replace({"simulation.output_rate": rate})), seat(config)) for rate in (200, 2000)
+    )
+    assert few.shock == pytest.approx(many.shock, rel=0.01)
+    assert few.dose == pytest.approx(many.dose, rel=0.005)
+
+
+@pytest.mark.parametrize("rate", [10, 20, 100, 199])
+def test_too_few_samples_have_no_comfort_rather_than_a_wrong_one(rate):
+    rough = load_config("random_road").replace({"drive.speed_kmh": 25, "road.roughness_class": "D"})
+    assert ride_comfort(simulate(rough.replace({"simulation.output_rate": rate}))) is None
+    assert ride_comfort(simulate(rough.replace({"simulation.output_rate": 200}))) is not None
 
 
 def test_a_run_of_one_sample_has_figures():

@@ -9,7 +9,7 @@ import pytest
 import scipy.signal
 
 from model import load_config, simulate
-from model.analysis.signals import seat, steady_from
+from model.analysis.signals import seat, window
 from model.analysis.spectrum import (
     acceleration_density,
     acceleration_spectrum,
@@ -17,7 +17,6 @@ from model.analysis.spectrum import (
     excitation,
     power_spectral_density,
 )
-from model.road.random_road import RUN_IN
 from tests.model.support import FLAT, PAPER
 
 
@@ -56,33 +55,14 @@ def test_the_papers_spectrum_peaks_where_its_waves_are_met(paper_run):
     found, height = acceleration_spectrum(paper_run)
     assert found[height.argmax()] == pytest.approx(0.6, abs=0.01)
     assert excitation(paper_run.config) == pytest.approx(0.595, abs=0.001)
-    steady = paper_run.a[paper_run.t >= steady_from(paper_run), 0, 1]
+    steady = paper_run.a[paper_run.t >= window(paper_run).start, 0, 1]
     assert height.max() / np.sqrt(2) == pytest.approx(np.sqrt(np.mean(steady**2)), rel=0.05)
 
 
 def test_only_the_steady_part_counts(paper_run):
-    before = paper_run.t < steady_from(paper_run)
+    before = paper_run.t < window(paper_run).start
     disturbed = replace(paper_run, a=paper_run.a + 50 * before[:, None, None] * np.sin(40 * paper_run.t)[:, None, None])
     np.testing.assert_array_equal(acceleration_spectrum(disturbed)[1], acceleration_spectrum(paper_run)[1])
-
-
-@pytest.mark.parametrize(
-    ("changes", "expected"),
-    [
-        ({}, (2.75 + 7 + 1.75) / (15 / 3.6) + 2),
-        ({"road.ramp": 0, "road.start": 3}, (3 + 1.75) / (15 / 3.6) + 2),
-        ({"road.start": 100}, 5.0),  # half the run at most
-        ({"road.type": "random"}, (2.75 + RUN_IN + 1.75) / (15 / 3.6) + 2),
-        (
-            {"road.type": "sum", "road.parts": [{"type": "sine"}, {"type": "half_round", "position": 20}]},
-            11.5 / (15 / 3.6) + 2,
-        ),
-        ({"road.type": "flat"}, 0.0),
-        ({"road.type": "half_round"}, 0.0),
-    ],
-)
-def test_when_the_steady_part_begins(paper_run, changes, expected):
-    assert steady_from(replace(paper_run, config=PAPER.replace(changes))) == pytest.approx(expected, abs=0.02)
 
 
 @pytest.mark.parametrize(("length", "segment"), [(4000, 1000), (1700, 1000), (873, 873), (41, 41)])

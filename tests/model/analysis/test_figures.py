@@ -1,0 +1,136 @@
+"""The table of figures, and the comparison of two runs, on hand-made runs whose answers are known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from model import load_config, simulate
+from model.analysis.figures import AIR_TIME, FIGURES, Row, comparison, figures_by_name
+from model.analysis.ride import imaginary_share, summary
+from model.simulation.trajectory import Trajectory
+from tests.model.analysis.test_ride import FLAT, RATE, standing
+
+
+def test_every_figure_has_a_name_a_label_and_a_meaning_of_its_own():
+    for key in ("name", "label", "meaning"):
+        assert len({getattr(figure, key) for figure in FIGURES}) == len(FIGURES)
+    assert all(figure.name.replace("_", "").isalpha() and figure.name.islower() for figure in FIGURES)
+
+
+def test_figures_by_name_are_those_of_each_wheel_and_of_the_worst():
+    run = standing()
+    run.normal_load[2, 3], run.normal_load[3:, 8] = 9000, 0
+    run.normal_load[1, :2] = 0
+    of = summary(run)
+    found = figures_by_name(of)
+    assert {figure.name for figure in FIGURES} <= set(found)
+    assert (found["peak_load"], found["peak_load.R4"], found["peak_load.I1"]) == (9, 9, 5)
+    assert found["air_time.I3"] == pytest.approx(2 / RATE)
+    assert found["air_time"] == pytest.approx(2 / RATE)  # R1 and R2, a sample each
+    assert found["shock"] == of.seat.shock
+    assert "travel.I1" not in found
+
+
+def test_what_cannot_be_told_is_none_and_stays_in_the_comparison():
+    slow = standing(FLAT.replace({"simulation.output_rate": 50}))
+    found = figures_by_name(summary(slow))
+    cannot = {name for name, value in found.items() if value is None}
+    assert cannot == {"shock", "weighted_acceleration", "vibration_dose", "transient", "absorbed_power"}
+    row = rows(slow, standing())["Absorbed power at the seat"]
+    assert (row.now, row.baseline, row.change) == (None, 0, None)
+
+
+def test_a_dose_is_compared_over_the_same_time_or_where_a_longer_run_changes_nothing():
+    config = load_config("half_round")
+    short, long = (simulate(config.replace({"simulation.duration": seconds})) for seconds in (6, 12))
+    waves = simulate(load_config("paper").replace({"drive.speed_kmh": 14}))
+    paper = simulate(load_config("paper"))
+    dose = "Vibration dose (VDV) at the seat"
+    assert rows(short, long)[dose].change == pytest.approx(0, abs=1)
+    assert rows(waves, paper)[dose].change is None
+    assert rows(paper, paper)[dose].change == 0
+    assert rows(short, long)[f"{AIR_TIME.label}, R1"].change is None
+
+
+def rows(now: Trajectory, baseline: Trajectory | None) -> dict[str, Row]:
+    found = {row.label: row for row in comparison(now, baseline)}
+    assert len(found) == len(comparison(now, baseline))
+    return found
+
+
+def test_a_comparison_gives_now_baseline_and_change_in_readers_units():
+    now, before = standing(), standing()
+    before.a[:, 0, 1], now.a[:, 0, 1] = [2, -2, 2, -2, 2], [1, -1, 1, -1, 1]
+    before.q[3, 0, 2], now.q[3, 0, 2] = np.radians(4), np.radians(-5)
+    before.normal_load[1:3, 1], now.normal_load[1:4, 1] = 0, 0
+    now.normal_load[0, 6] = 7500
+    third = now.system.road_wheels.start + 2
+    before.q[1, third, 1] += 0.02
+    now.q[1, third, 1] += 0.02
+    now.q[2, third, 1] -= 0.01
+    found = rows(now, before)
+
+    def row(label: str) -> tuple[str, float, float, float | None]:
+        return found[label].unit, found[label].now, found[label].baseline, found[label].change
+
+    assert row("Vertical acceleration, rms") == ("m/s²", 1, 2, -50)
+    assert row("Vertical acceleration, peak") == ("m/s²", 1, 2, -50)
+    assert row("Weighted acceleration at the seat")[:2] == ("m/s²", pytest.approx(summary(now).seat.total))
+    assert row("Absorbed power at the seat")[3] == pytest.approx(-75, abs=0.5)
+    assert row("Pitch, peak to peak") == ("°", pytest.approx(5), pytest.approx(4), pytest.approx(25))
+    assert row("Peak load, I1") == ("kN", 7.5, 5, pytest.approx(50))
+    assert row("Peak load, R1") == ("kN", 5, 5, 0)
+    assert row("Load, rms, R2") == (
+        "kN",
+        *(pytest.approx(5 * np.sqrt(k / 5)) for k in (2, 3)),
+        pytest.approx(-18.35, abs=0.01),
+    )
+    assert row("Time in the air, R2") == ("s", pytest.approx(3 / RATE), pytest.approx(2 / RATE), pytest.approx(50))
+    # R3: the hull's pitch of sample 3 moves its wheels too, so the figures are those of the summary
+    up, down = summary(now).travel_up[2], summary(now).travel_down[2]
+    assert row("Suspension travel, R3")[:2] == ("mm", pytest.approx(1000 * (up - down)))
+
+    def share_of(run: Trajectory) -> float:
+        return imaginary_share(run.normal_load, 6)
+
+    share = found["Load on imaginary wheels"]
+    assert share.unit == "%"
+    assert share.now == pytest.approx(100 * share_of(now))
+    assert share.change == pytest.approx(100 * (share_of(now) / share_of(before) - 1))
+
+
+def test_changes_that_mean_nothing_are_left_out():
+    quiet, shaken = standing(), standing()
+    quiet.a[:, 0, 1], shaken.a[:, 0, 1] = 1e-9, 1
+    shaken.normal_load[2, 0] = 0
+    found = rows(shaken, quiet)
+    assert found["Vertical acceleration, rms"].change is None
+    assert found["Time in the air, R1"].change is None  # before: never
+    assert found["Time in the air, R1"].now == pytest.approx(1 / RATE)
+    assert found["Time in the air, R1"].resolution == pytest.approx(1 / RATE)
+    assert found["Peak load, R1"].resolution == 0
+    assert found["Suspension travel, R1"].change is None
+    longer = standing(samples=9)
+    longer.normal_load[2, 0] = 0
+    assert rows(longer, shaken)["Time in the air, R1"].change is None
+    assert rows(shaken, shaken)["Time in the air, R1"].change == 0
+
+
+def test_without_a_baseline_there_is_only_now():
+    assert all(
+        row.now is not None and row.baseline is None and row.change is None for row in comparison(standing(), None)
+    )
+
+
+def test_vehicles_with_different_wheels_are_compared_wheel_by_wheel():
+    four = standing(FLAT.replace({"vehicle.road_wheels.count": 4}))
+    bare = standing(FLAT.replace({"vehicle.imaginary_wheels.enabled": False}))
+    found = rows(four, bare)
+    peaks = [row.wheel for row in found.values() if row.figure == "Peak load"]
+    assert peaks == ["R1", "R2", "R3", "R4", "R5", "R6", "I1", "I2", "I3"]
+    assert (found["Peak load, R5"].now, found["Peak load, R5"].baseline) == (None, 5)
+    assert (found["Peak load, I3"].now, found["Peak load, I3"].baseline) == (5, None)
+    assert found["Peak load, I3"].change is None
+    assert "Suspension travel, I1" not in found
+    assert next(iter(found)) == "Vertical acceleration, rms"
