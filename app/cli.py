@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib import metadata
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 from rich.console import Console
@@ -198,14 +198,23 @@ def _configuration(source: str, changes: list[str] | None) -> Config:
             values[key] = text if is_text else parse_value(text)
         except ConfigError as error:
             faults.append(f"--set {change}: {error}")
+    reading: dict[str, Any] = {key: values[key] for key in ("road.columns", "road.units") if key in values}
+    read: list[str] = []
     try:
-        if values.get("road.file") and "road.points" not in values:
-            values |= read_profile(values["road.file"])
-        config = load_config(source).replace(values)
+        file = values.get("road.file")
+        if file and "road.points" not in values:
+            profile = read_profile(file, *(reading.get(key, ()) for key in ("road.columns", "road.units")))
+            values["road.points"] = profile.points
+            config = load_config(source).replace(values)
+            read.append(f"{Path(file).name}: {profile.said}")
+        else:
+            config = load_config(source, reading, read.append).replace(values)
     except ConfigError as error:
         faults.append(str(error))
     if faults:
         _fail("\n".join(faults))
+    for sentence in read:
+        _say(f"{sentence}.")
     return config
 
 

@@ -14,8 +14,9 @@ from tests.structure import FLOOR, IMPORTS, MODULES, PICTURE, ROOT, arrows, chai
 PLACES = {
     "numba": {"model.compiled"},
     "model.compiled": {
-        *("model.road.nearest_point", "model.road.table"),
-        *("model.dynamics.contact", "model.dynamics.kernel", "model.simulation.steppers"),
+        *("model.road.nearest_point", "model.road.table", "model.road.thinning"),
+        *("model.dynamics.kernel_contact", "model.dynamics.kernel"),
+        *("model.simulation.dense", "model.simulation.extremes", "model.simulation.steppers"),
         *("app.plots.thinning", "app.view3d.track_belt"),
     },
     "threading": {"app.session.session", "app.session.background", "app.runs.runner"},

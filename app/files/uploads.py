@@ -6,8 +6,9 @@ from io import BytesIO
 from typing import Any
 from zipfile import BadZipFile, ZipFile
 
-from model.config.config import SIZE_LIMIT, Config, ConfigError, Fault, parse_config
-from model.config.profile_points import PointsError, read_csv
+from model.config.config import SIZE_LIMIT, Config, ConfigError, Fault, ProfileRoad, parse_config
+from model.config.profile_files import read_profile_file
+from model.config.profile_points import PointsError
 from model.road.road import RAMP_AHEAD
 from model.simulation.trajectory import Trajectory
 
@@ -25,22 +26,24 @@ def configuration(name: str, content: bytes) -> Config:
         raise ConfigError([Fault("", "", "the file is not UTF-8 text")], name) from None
 
 
-def profile_changes(name: str, content: bytes, config: Config) -> dict[str, Any]:
-    """Changes (dotted key -> value) that make a CSV file's profile the road. Raises ConfigError with all faults.
+def profile_changes(name: str, content: bytes, config: Config) -> tuple[dict[str, Any], str]:
+    """Changes (dotted key -> value) that make a file's profile the road, and a sentence that says what was read.
 
-    A profile that is not level under the vehicle is put ahead of it.
+    A profile that is not level under the vehicle is put ahead of it. Raises ConfigError with all faults.
     """
     try:
-        points = read_csv(content)
+        read = read_profile_file(content)
     except PointsError as error:
         raise ConfigError([Fault("", "", str(error))], name) from None
-    changes: dict[str, Any] = {"road.type": "profile", "road.file": name, "road.points": points}
+    changes: dict[str, Any] = {"road.type": "profile", "road.file": name, "road.points": read.points}
+    if isinstance(config.road, ProfileRoad):
+        changes |= {"road.columns": (), "road.units": ()}  # those of the file before
     try:
         config.replace(changes)
     except ConfigError:
         changes["road.start"] = round(config.vehicle.road_wheels.x[0] + RAMP_AHEAD, 6)
         config.replace(changes)
-    return changes
+    return changes, read.said
 
 
 def run_from(name: str, content: bytes) -> Trajectory:

@@ -75,6 +75,8 @@ def shown_text(parameter: Parameter, value: Any) -> str:
         return " + ".join(choice_words(road.type) for road in value) or "none"
     if isinstance(value, str):
         return value
+    if parameter.kind in ("columns", "units"):
+        return ", ".join(value)
     if isinstance(value, tuple):
         return ", ".join(number_text(shown_number(parameter, number)) for number in value)
     return number_text(shown_number(parameter, value))

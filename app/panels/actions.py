@@ -33,7 +33,7 @@ class Actions(Protocol):
         """Take the last part of the road away."""
 
     def upload_profile(self, name: str, content: bytes) -> None:
-        """Make the road of a CSV file."""
+        """Make the road of a file."""
 
     # Configurations
 

@@ -13,11 +13,11 @@ from app.panels.callbacks import by_user
 from app.panels.controls import IMAGINARY, IMAGINARY_SWITCH, Control
 from app.panels.road_controls import PartsControl, ProfileControl
 from model.config.config import Config
-from model.config.parameters import GROUPS, NOTES, PARAMETERS, ROAD, Parameter
+from model.config.parameters import GROUPS, NOTED, NOTES, PARAMETERS, ROAD, Parameter
 
 SECTION_OF = {parameter.key: parameter.key.rpartition(".")[0] for parameter in PARAMETERS}
 SECTIONS = {name: attrgetter(name) for name in SECTION_OF.values() if name}
-BOXED = tuple(p for p in PARAMETERS if not p.what_if and p.group != NOTES and p.kind != "text")  # in folders
+BOXED = tuple(p for p in PARAMETERS if not p.what_if and p.group != NOTES and p.kind not in NOTED)  # in folders
 KINDS: dict[str, Any] = {"points": ProfileControl, "parts": PartsControl}  # that have controls of their own
 
 

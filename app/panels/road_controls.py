@@ -38,15 +38,16 @@ class RoadControl:
 
 
 class ProfileControl(RoadControl):
-    """A button that takes a CSV file, and the extent of the present profile."""
+    """A button that takes the file of a profile, and the extent of the present profile."""
 
     def __init__(self, gui: viser.GuiApi, parameter: Parameter, value: Any, actions: Actions) -> None:
         super().__init__(parameter, value)
         self._upload = gui.add_upload_button(
             "Open a profile",
-            mime_type=".csv,.txt,.tsv",
-            hint="A CSV file with two columns, x and y in m, x growing; it becomes the road. If it is not level under "
-            "the vehicle, it is put 1 m ahead of the first wheel.",
+            mime_type=".csv,.txt,.tsv,.erd,.crg",
+            hint="A table of distance and height (CSV and the like; in m, or as its headings say), ERD "
+            "or OpenCRG; it becomes the road. If it is not level under the vehicle, it is put 1 m ahead of the first "
+            "wheel.",
         )
         self._extent = gui.add_html("")
         file = self._upload

@@ -7,11 +7,10 @@ from typing import Any
 
 from app.format.parameters import choice_words, shown_number
 from model.config.config import Config, FlatRoad, ProfileRoad, SimpleRoad, SumRoad, part_values
-from model.config.parameters import PARAMETER, number_text
+from model.config.parameters import PARAMETER, ROADS, number_text
 
-ADDED = ("half_round", "trapezoid", "step", "random")  # that a button can add
+ADDED = (*(kind for kind in ROADS if PARAMETER["road.position"].applies_to(kind)), "random")  # by a button
 AHEAD, APART = 3.0, 6.0  # m from the first wheel to the first obstacle, and from one to the next
-LENGTHS = {"half_round": "radius", "trapezoid": "base"}  # of obstacles
 
 
 def with_part(config: Config, road_type: str) -> dict[str, Any]:

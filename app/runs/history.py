@@ -11,7 +11,7 @@ import numpy as np
 from app.format.parameters import choice_words, shown_text
 from app.runs.request import Request, changed_keys, same
 from model.config.config import Config
-from model.config.parameters import PARAMETER, Parameter
+from model.config.parameters import NOTED, PARAMETER, Parameter
 from model.simulation.trajectory import Trajectory
 
 REST = 1.0  # s: changes of the same parameters that follow each other faster are one step
@@ -182,7 +182,7 @@ def differences(before: Config, after: Config) -> list[str]:
     changed = [
         key
         for key, parameter in PARAMETER.items()
-        if parameter.kind != "text" and parameter.applies_to(after.road.type) and old.get(key) != new.get(key)
+        if parameter.kind not in NOTED and parameter.applies_to(after.road.type) and old.get(key) != new.get(key)
     ]
     return [
         _difference(before.parameter(key), old.get(key), after.parameter(key), new.get(key))

@@ -14,7 +14,6 @@ import viser
 from app.files.pictures import FIGURE_SIZE, MOVIE_LENGTH, MOVIE_RATE, NoPictureError, movie_frames, take_picture
 from app.files.uploads import configuration, profile_changes, run_from
 from app.format.file_names import file_name
-from app.format.parameters import shown_text
 from app.panels.files_panel import PICTURE
 from app.runs.drive import DriveState
 from app.runs.history import run_name
@@ -24,7 +23,6 @@ from app.session.background import BackgroundJob
 from app.session.window import Window
 from app.session.workspace import Workspace
 from model.config.config import Config, ConfigError, dump_config
-from model.config.parameters import PARAMETER
 from model.simulation.trajectory import Trajectory
 
 AT_REST = ("figure.png", "figure.svg", "replay", "movie")  # these show one stretch of a drive and take a while to make
@@ -140,7 +138,7 @@ class Transfers:
             self._workspace.use_configuration(config)
 
     def take_profile(self, name: str, content: bytes) -> None:
-        """Request the profile in an uploaded CSV file as the road."""
+        """Request the profile in an uploaded file as the road."""
         self._begin(partial(self._measure, name, content))
 
     def take_run(self, name: str, content: bytes) -> None:
@@ -282,13 +280,13 @@ class Transfers:
         if run is None:
             return
         try:
-            changes = profile_changes(name, content, run.config)
+            changes, said = profile_changes(name, content, run.config)
         except ConfigError as error:
             faults = error
             self._drawing.post("faults", lambda: self._window.show_faults(f"{name[:60]} cannot be used", faults))
             return
         self._drawing.post("profile", lambda: self._workspace.change_road(lambda config: changes))
-        self._say("Another road", f"{name[:60]}: {shown_text(PARAMETER['road.points'], changes['road.points'])}.")
+        self._say("Another road", f"{name[:60]}: {said}.")
 
     def _unpack(self, name: str, content: bytes) -> None:
         try:

@@ -7,7 +7,7 @@ import numpy as np
 from app.format.markup import element
 from app.plots.ticks import ticks
 from model.config.config import Config
-from model.road.road import Road, build_road
+from model.road.road import Road
 from model.simulation.trajectory import Trajectory
 
 BEHIND, AHEAD = 10.0, 30.0  # m of road about the hull's centre of mass
@@ -31,7 +31,7 @@ class RoadAhead:
     def of_run(self, run: Trajectory, time: float) -> str:
         """HTML of the view at a time of a run with samples, s."""
         if self._road is None or self._config is None or not _same_road(self._config, run.config):
-            self._config, self._road, self._run = run.config, build_road(run.config), None
+            self._config, self._road, self._run = run.config, run.road, None
         if self._run is not run:
             x = run.q[:, run.system.chassis, 0]
             self._run, self._span = run, span_of(self._road, float(x.min()), float(x.max()))

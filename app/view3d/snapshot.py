@@ -19,8 +19,9 @@ import numpy as np
 from app.view3d.meshes.measures import Measures, measures_of
 from app.view3d.meshes.surroundings import AHEAD, BEHIND, TILES, shadow
 from app.view3d.track_belt import ARC, points_along, track_path
+from model.analysis.ride import wheel_heights
 from model.dynamics.vehicle import System
-from model.road.road import Road, build_road
+from model.road.road import Road
 from model.simulation.drive import REBASE
 from model.simulation.trajectory import Trajectory
 
@@ -142,10 +143,7 @@ class Scene:
     @cached_property
     def travel(self) -> Travel:
         """How far the road wheels have moved in the hull."""
-        run, chassis = self.trajectory, self.system.chassis
-        wheels = run.q[:, self.system.road_wheels, :2] - run.q[:, chassis, None, :2]
-        pitch = run.q[:, chassis, 2, None]
-        height = np.cos(pitch) * wheels[..., 1] - np.sin(pitch) * wheels[..., 0] - self.places.on_hull[0].imag
+        height = wheel_heights(self.system, self.trajectory.q) - self.places.on_hull[0].imag
         now = Travel(height.min(axis=0), height.max(axis=0), height[0])
         if self.before is None:
             return now
@@ -285,9 +283,9 @@ def build_scene(trajectory: Trajectory, like: Scene | None = None) -> Scene:
     x = trajectory.q[:, system.chassis, 0]
     first, last = float(x.min()) - BEHIND - TILES, float(x.max()) + AHEAD + TILES
     if like is None or like.measures != measures:
-        ground = GroundLine.along(build_road(config), first, last)
+        ground = GroundLine.along(trajectory.road, first, last)
         return Scene(trajectory, system, measures, Places(system, measures), ground)
-    ground = GroundLine.along(build_road(config), first, last, like.ground)
+    ground = GroundLine.along(trajectory.road, first, last, like.ground)
     return Scene(trajectory, system, measures, like.places, ground)
 
 

@@ -9,7 +9,6 @@ import numpy as np
 from model.analysis.ride import contact_motion
 from model.dynamics.ground import losses, pressed, shear_energy
 from model.dynamics.suspension import dissipated_power, elastic
-from model.road.road import build_road
 from model.simulation.trajectory import Trajectory
 
 
@@ -68,7 +67,7 @@ def energy_balance(trajectory: Trajectory) -> EnergyBalance:
     obstacle, at whose foot the contact point jumps, to 0.12 %, which falls to 0.009 % at 2000 samples a second.
     """
     system, q, v = trajectory.system, trajectory.q, trajectory.v
-    touch = contact_motion(system, build_road(trajectory.config), q, v)
+    touch = contact_motion(system, trajectory.road, q, v)
     xi = trajectory.tangential_displacement
 
     turn = q[:, system.spring_i, 2] - q[:, system.spring_j, 2]
@@ -108,7 +107,7 @@ def energy_balance(trajectory: Trajectory) -> EnergyBalance:
 def load_balance(trajectory: Trajectory) -> LoadBalance:
     """Σ vertical contact force of a run beside the vehicle's weight and inertia."""
     system = trajectory.system
-    normal = contact_motion(system, build_road(trajectory.config), trajectory.q, trajectory.v).normal
+    normal = contact_motion(system, trajectory.road, trajectory.q, trajectory.v).normal
     force = trajectory.normal_load * normal[..., 1] - trajectory.traction * normal[..., 0]
     return LoadBalance(force.sum(axis=1), trajectory.a[:, :, 1] @ system.mass + system.weight.sum())
 

@@ -14,7 +14,7 @@ from model.analysis.signals import Window, seat, window
 from model.config.config import Config, SineRoad
 from model.dynamics.equilibrium import NoEquilibriumError, rest_pose
 from model.dynamics.vehicle import System
-from model.road.road import Road, build_road
+from model.road.road import Road, profile_end, profile_start
 from model.simulation.trajectory import Trajectory, wheel_names
 
 ARM_LIMIT = np.radians(45)  # turn of a road arm beyond which the model is doubtful
@@ -119,17 +119,17 @@ def summary(trajectory: Trajectory) -> Summary:
 
 def peak_load(trajectory: Trajectory) -> np.ndarray:
     """(W,) N: the largest load of each wheel."""
-    return trajectory.normal_load.max(axis=0)
+    return trajectory.peaks.load
 
 
 def air_time(trajectory: Trajectory) -> np.ndarray:
     """(W,) s for which each wheel has no load."""
-    return (trajectory.normal_load <= 0).sum(axis=0) / trajectory.config.simulation.output_rate
+    return trajectory.peaks.air_time
 
 
 def peak_acceleration(trajectory: Trajectory) -> float:
     """The largest vertical acceleration of the hull's centre of mass in either direction, m/s²."""
-    return float(np.abs(trajectory.a[:, trajectory.system.chassis, 1]).max())
+    return float(trajectory.peaks.acceleration)
 
 
 def suspension_travel(trajectory: Trajectory) -> np.ndarray:
@@ -140,10 +140,15 @@ def suspension_travel(trajectory: Trajectory) -> np.ndarray:
         with suppress(NoEquilibriumError):
             static = rest_pose(system)[0]
         q = np.concatenate([static[None], q])
+    height = wheel_heights(system, q)
+    return height[-len(trajectory.t) :] - height[0]
+
+
+def wheel_heights(system: System, q: np.ndarray) -> np.ndarray:
+    """(N, n) m: of each road wheel's centre over the hull's centre of mass, in its frame, in poses q (N, B, 3)."""
     hull_x, hull_y, pitch = q[:, system.chassis, :, None].swapaxes(0, 1)
     x, y = q[:, system.road_wheels, 0] - hull_x, q[:, system.road_wheels, 1] - hull_y
-    height = np.cos(pitch) * y - np.sin(pitch) * x
-    return height[-len(trajectory.t) :] - height[0]
+    return np.cos(pitch) * y - np.sin(pitch) * x
 
 
 def imaginary_share(load: np.ndarray, road_wheels: int) -> float:
@@ -151,9 +156,14 @@ def imaginary_share(load: np.ndarray, road_wheels: int) -> float:
 
     load: (N, W) N, of so many road wheels and then of imaginary ones.
     """
+    share, grounded = imaginary_shares(load, road_wheels), load.sum(axis=1) > 0
+    return float(np.mean(share[grounded])) if grounded.any() else 0.0
+
+
+def imaginary_shares(load: np.ndarray, road_wheels: int) -> np.ndarray:
+    """(N,) the same at each sample; 0 with all wheels in the air."""
     total, imaginary = load.sum(axis=1), load[:, road_wheels:].sum(axis=1)
-    grounded = total > 0
-    return float(np.mean(imaginary[grounded] / total[grounded])) if grounded.any() else 0.0
+    return imaginary / np.where(total > 0, total, 1.0)
 
 
 def dynamic_load_coefficient(load: np.ndarray, static_load: np.ndarray) -> np.ndarray:
@@ -167,7 +177,7 @@ def dynamic_load_coefficient(load: np.ndarray, static_load: np.ndarray) -> np.nd
 def wheel_state(trajectory: Trajectory, wheel: int, time: float, road: Road | None = None) -> WheelState:
     """A wheel, counted from 0 with road wheels first, at a time, s; between samples in proportion.
 
-    A time outside the run gives its start or its end. road: where it is at hand, or another than the configuration's.
+    A time outside the run gives its start or its end. road: where it is at hand, or another than the run's own.
     """
     system = trajectory.system
     t = trajectory.t
@@ -179,7 +189,7 @@ def wheel_state(trajectory: Trajectory, wheel: int, time: float, road: Road | No
         return (1 - part) * samples[before] + part * samples[after]
 
     q, load = at_time(trajectory.q), at_time(trajectory.normal_load)
-    touch = contact_motion(system, road or build_road(trajectory.config), q, at_time(trajectory.v))
+    touch = contact_motion(system, road or trajectory.road, q, at_time(trajectory.v))
     touching = touch.depth[wheel] > 0
     total = float(load.sum())
     share = float(load[wheel]) / total if total > 0 else None
@@ -217,17 +227,19 @@ def contact_motion(system: System, road: Road, q: np.ndarray, v: np.ndarray) -> 
 def penetration(trajectory: Trajectory, road: Road | None = None) -> np.ndarray:
     """(N, W) m: how deep each wheel is in the ground; negative, and −∞ high up, in the air.
 
-    road: another than the configuration's.
+    road: another than the run's own.
     """
-    return contact_motion(trajectory.system, road or build_road(trajectory.config), trajectory.q, trajectory.v).depth
+    return contact_motion(trajectory.system, road or trajectory.road, trajectory.q, trajectory.v).depth
 
 
 def warnings(trajectory: Trajectory, road: Road | None = None) -> list[RideWarning]:
-    """What the reader of this run should know, each with what it means. road: another than the configuration's."""
+    """What the reader of this run should know, each with what it means. road: another than the run's own."""
     taken = window(trajectory)
     felt = ride_comfort(trajectory, seat(trajectory.config), taken)
+    of_profile = _profile_missed(trajectory) if road is None else ()
     return [
         *motion_warnings(trajectory),
+        *of_profile,
         *_wheels_sunk_deep(trajectory, road),
         *figure_warnings(trajectory.config, taken, felt),
     ]
@@ -235,7 +247,11 @@ def warnings(trajectory: Trajectory, road: Road | None = None) -> list[RideWarni
 
 def motion_warnings(trajectory: Trajectory) -> list[RideWarning]:
     """Those of the warnings that need no road."""
-    return [*_arms_turned_far(trajectory), *_vehicle_in_the_air(trajectory), *_wheels_in_phase(trajectory)]
+    return [
+        *_arms_turned_far(trajectory),
+        *_vehicle_in_the_air(trajectory),
+        *_wheels_in_phase(trajectory),
+    ]
 
 
 def figure_warnings(config: Config, taken: Window, felt: Comfort | None) -> Iterator[RideWarning]:
@@ -256,25 +272,27 @@ def figure_warnings(config: Config, taken: Window, felt: Comfort | None) -> Iter
 
 
 def _arms_turned_far(trajectory: Trajectory) -> Iterator[RideWarning]:
-    q, system = trajectory.q, trajectory.system
-    turn = q[:, system.road_arms, 2] - q[:, [system.chassis], 2]
-    sample, arm = np.unravel_index(np.abs(turn).argmax(), turn.shape)
-    if abs(turn[sample, arm]) > ARM_LIMIT:
-        angle = np.degrees(turn[sample, arm])
+    peaks = trajectory.peaks
+    turn, time = np.stack([peaks.arm_low, peaks.arm_high]), np.stack([peaks.arm_low_time, peaks.arm_high_time])
+    way, arm = np.unravel_index(np.abs(turn).argmax(), turn.shape)
+    if abs(turn[way, arm]) > ARM_LIMIT:
+        angle = np.degrees(turn[way, arm])
         yield RideWarning(
-            f"Road arm {arm + 1} turned by {angle:+.3g}° (t = {trajectory.t[sample]:.2f} s)",
+            f"Road arm {arm + 1} turned by {angle:+.3g}° (t = {time[way, arm]:.2f} s)",
             "A real arm would have hit a stop before 45°; the paper's has none. Give bump and rebound stops.",
         )
 
 
 def _wheels_sunk_deep(trajectory: Trajectory, road: Road | None) -> Iterator[RideWarning]:
-    depth = penetration(trajectory, road)
-    sample, wheel = np.unravel_index(depth.argmax(), depth.shape)
-    if depth[sample, wheel] > SINKING_LIMIT * trajectory.system.r:
+    depth, time = trajectory.peaks.depth, trajectory.peaks.depth_time
+    if trajectory.tracked is None:
+        sampled = penetration(trajectory, road)
+        depth, time = sampled.max(axis=0), trajectory.t[sampled.argmax(axis=0)]
+    wheel = int(depth.argmax())
+    if depth[wheel] > SINKING_LIMIT * trajectory.system.r:
         name = wheel_names(trajectory.system)[wheel]
         yield RideWarning(
-            f"Wheel {name} sank {1000 * depth[sample, wheel]:.3g} mm into the ground "
-            f"(t = {trajectory.t[sample]:.2f} s)",
+            f"Wheel {name} sank {1000 * depth[wheel]:.3g} mm into the ground (t = {time[wheel]:.2f} s)",
             "The contact law is meant for less than a tenth of the radius: take this load with care, "
             "or stiffen the ground.",
         )
@@ -300,4 +318,24 @@ def _wheels_in_phase(trajectory: Trajectory) -> Iterator[RideWarning]:
             f"The wavelength, {road.wavelength:g} m, fits the wheel spacing",
             "All road wheels rise and fall together: the hull bounces without pitching, more than on waves a "
             "little shorter or longer.",
+        )
+
+
+def _profile_missed(trajectory: Trajectory) -> Iterator[RideWarning]:
+    """Of a measured profile that is not reached, or that ends under way."""
+    system, config = trajectory.system, trajectory.config
+    start, end = profile_start(config), profile_end(config)
+    if start is None:
+        return
+    wheels = trajectory.q[:, system.road_wheels, 0]
+    if wheels.max() < start:
+        yield RideWarning(
+            f"The profile was not reached: it begins at x = {start:.6g} m, the wheels came to {wheels.max():.4g} m",
+            "Nothing here is of the measured road: give road.start, where its first point is to lie, or a longer run.",
+        )
+    elif end is not None and wheels[-1].min() > end:
+        left = trajectory.t[(wheels.min(axis=1) > end).argmax()]
+        yield RideWarning(
+            f"The points of the profile end at x = {end:.4g} m; all wheels were past that at t = {left:.2f} s",
+            "From there on the road is level. Figures that count this stretch too are too small: end the run there.",
         )

@@ -5,7 +5,7 @@ Defaults, ranges and descriptions are in parameters.py, what may stand together 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from importlib import resources
 from operator import attrgetter
 from pathlib import Path
@@ -15,9 +15,10 @@ import yaml
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from model.config.parameters import PARAMETER, PARAMETERS, PART_LIMIT, Parameter, Value
-from model.config.profile_points import FILE_LIMIT, PointsError, read_csv
+from model.config.profile_files import ProfileFile, read_profile_file
+from model.config.profile_points import FILE_LIMIT, PointsError
 from model.config.strict_yaml import dump_yaml, parse_yaml
-from model.config.validation import EXCLUSIVE, ConfigError, Fault, check_values, unknown_fault, wheel_positions
+from model.config.validation import EXCLUSIVE, ConfigError, Fault, check_values, convert, unknown_fault, wheel_positions
 
 __all__ = [
     "Config",
@@ -189,10 +190,12 @@ class RandomRoad(Section):
 
 
 class ProfileRoad(Section):
-    """`file` only says where the points came from: it was read when the configuration was loaded."""
+    """`file`, `columns` and `units` only say where the points came from: they were read when it was loaded."""
 
     type: Literal["profile"] = "profile"
     file: str = _field("road.file")
+    columns: tuple[str, ...] = _field("road.columns")
+    units: tuple[str, ...] = _field("road.units")
     points: str = _field("road.points")
     start: float | None = _field("road.start")
 
@@ -302,7 +305,7 @@ def config_from_dict(given: Any) -> Config:
 
 def parse_config(text: str, source: str = "") -> Config:
     """A Config from YAML text; `source` names it in messages. Raises ConfigError with all faults."""
-    return _configured(text, source, None)
+    return _configured(text, source, None, {}, None)
 
 
 def parse_value(text: str) -> Any:
@@ -325,8 +328,15 @@ def part_values(road: SimpleRoad) -> dict[str, Value]:
     return {name: value for name, value in values.items() if value is not None}
 
 
-def load_config(path_or_preset: str | Path) -> Config:
-    """A Config from a preset's name or a YAML file, with the profiles it names. Raises ConfigError with all faults."""
+def load_config(
+    path_or_preset: str | Path,
+    reading: Mapping[str, Any] | None = None,
+    on_read: Callable[[str], None] | None = None,
+) -> Config:
+    """A Config from a preset's name or a YAML file, with the profiles it names. Raises ConfigError with all faults.
+
+    reading: road.columns and road.units that take the place of the file's; on_read: gets a sentence for each profile.
+    """
     name = str(path_or_preset)
     folder = None
     try:
@@ -343,21 +353,25 @@ def load_config(path_or_preset: str | Path) -> Config:
     if len(data) > SIZE_LIMIT:
         raise _text_error(f"the file is larger than {SIZE_LIMIT} bytes", name)
     try:
-        return _configured(data.decode("utf-8-sig"), name, folder)
+        return _configured(data.decode("utf-8-sig"), name, folder, reading or {}, on_read)
     except UnicodeDecodeError:
         raise _text_error("the file is not UTF-8 text", name) from None
 
 
-def read_profile(path: str | Path, key: str = "road.file") -> dict[str, str]:
-    """Values by dotted path of a profile in a CSV file: its name and its points. Raises ConfigError for `key`."""
+def read_profile(path: str | Path, columns: Any = (), units: Any = (), key: str = "road.file") -> ProfileFile:
+    """The profile in a file; columns and units as in a configuration. Raises ConfigError for `key`."""
+    place = key.removesuffix("file")
     try:
-        points = read_csv(_read(path, FILE_LIMIT))
+        columns, units = convert(PARAMETER["road.columns"], columns), convert(PARAMETER["road.units"], units)
+    except ValueError:
+        allowed = f"give {PARAMETER['road.columns'].allowed}, and {PARAMETER['road.units'].allowed}"
+        raise ConfigError([Fault(f"{place}columns", "", f"columns or units are not allowed; {allowed}")]) from None
+    try:
+        return read_profile_file(_read(path, FILE_LIMIT), columns, units)
     except PointsError as error:
-        message = str(error)
+        message = f"{error} ({Path(path).name[:80]})"
     except (OSError, ValueError) as error:
         message = f"{str(path)[:200]} cannot be read: {getattr(error, 'strerror', None) or error}"
-    else:
-        return {key: str(path), f"{key.removesuffix('.file')}.points": points}
     raise ConfigError([Fault(key, str(path), message)])
 
 
@@ -367,35 +381,51 @@ def _read(path: str | Path, limit: int) -> bytes:
         return file.read(limit + 1)
 
 
-def _configured(text: str, source: str, folder: Path | None) -> Config:
+def _configured(
+    text: str,
+    source: str,
+    folder: Path | None,
+    reading: Mapping[str, Any],
+    on_read: Callable[[str], None] | None,
+) -> Config:
     """A Config from YAML text; profiles are read from files in the folder, if there is one."""
     faults: list[Fault] = []
+    said: list[str] = []
     try:
         given = _parsed(text)
         if folder is not None and isinstance(given, dict):
-            _read_profiles(given.get("road"), "road", folder, faults)
+            road = given.get("road")
+            if isinstance(road, dict) and road.get("type") == "profile":
+                road |= {key.removeprefix("road."): value for key, value in reading.items()}
+            _read_profiles(road, "road", folder, faults, said)
         config = config_from_dict(given)
     except ConfigError as error:
         faults += error.faults
     if faults:
         raise ConfigError(faults, source)
+    if on_read is not None:
+        for sentence in said:
+            on_read(sentence)
     return config
 
 
-def _read_profiles(road: Any, key: str, folder: Path, faults: list[Fault]) -> None:
-    """Put the points of the files that a road names beside the names."""
+def _read_profiles(road: Any, key: str, folder: Path, faults: list[Fault], said: list[str]) -> None:
+    """Put the points of the files that a road names beside the names, and say what was read."""
     if not isinstance(road, dict):
         return
     file = road.get("file")
     if road.get("type") == "profile" and isinstance(file, str) and file and "points" not in road:
         try:
-            road["points"] = read_profile(folder / file, f"{key}.file")[f"{key}.points"]
+            read = read_profile(folder / file, road.get("columns", ()), road.get("units", ()), f"{key}.file")
+            road["points"] = read.points
+            said.append(f"{file}: {read.said}")
         except ConfigError as error:
             faults += error.faults
-            del road["file"]
+            for name in ("file", "columns", "units"):
+                road.pop(name, None)
     parts = road.get("parts")
     for number, part in enumerate(parts[:PART_LIMIT] if isinstance(parts, list) else []):
-        _read_profiles(part, f"{key}.parts[{number}]", folder, faults)
+        _read_profiles(part, f"{key}.parts[{number}]", folder, faults, said)
 
 
 def preset_names() -> list[str]:

@@ -11,11 +11,13 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-Kind = Literal["number", "integer", "choice", "flag", "list", "text", "points", "parts"]
+Kind = Literal["number", "integer", "choice", "flag", "list", "text", "columns", "units", "points", "parts"]
 Value = float | int | str | bool | tuple[Any, ...] | None  # tuples hold numbers, or roads that make up a sum
 
 WHEEL_COUNT = (2, 20)  # road wheels a side; also the length of a list with one value for each
 PART_LIMIT = 10  # roads in a sum
+UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "dm": 0.1, "km": 1e3, "ft": 0.3048, "in": 0.0254}  # of length, and its m
+NOTED: tuple[Kind, ...] = ("text", "columns", "units")  # kinds that are noted beside a run and change nothing in it
 STEEPEST = math.tan(math.radians(85))  # slope of a road's faces: none is steeper
 
 
@@ -70,6 +72,8 @@ class Parameter:
             "flag": "true or false",
             "list": f"a list of {WHEEL_COUNT[0]} to {WHEEL_COUNT[1]} numbers {reach}, front wheel first",
             "text": f"a text of at most {self.high:g} printable characters",
+            "columns": "a list of one or two names or numbers of columns, such as [x, z]",
+            "units": "units of x and y, such as {x: ft, y: in}, each one of " + ", ".join(UNITS),
             "points": "points x y, x y, … in m, x growing",
             "parts": f"a list of at most {PART_LIMIT} roads, each with its type and keys, none of them a sum",
         }[self.kind]
@@ -379,8 +383,17 @@ PARAMETERS: tuple[Parameter, ...] = (
         growth="It takes longer until the same bumps come again; it is another road of the same roughness."),
     Parameter("road.file", "Profile file", "", "", "", 0, 500,
         group=ROAD, source=OURS, roads=("profile",), kind="text",
-        description="CSV file of the profile: two columns, x and y in m; found from the folder of the configuration "
-        "that names it. Beside points it only says where these came from."),
+        description="File of the profile: a table of text with columns of x and y (CSV and the like), ERD or OpenCRG; "
+        "found from the folder of the configuration that names it. Beside points it only says where these came from."),
+    Parameter("road.columns", "Columns", "", "", (),
+        group=ROAD, source=OURS, roads=("profile",), kind="columns",
+        description="Columns of the file that hold x and y, or y alone, by name or by number from 1; of OpenCRG, v=0.9 "
+        "is the line at v = 0.9 m. Left out: those that the headings name; the first channel of ERD, the middle of "
+        "OpenCRG."),
+    Parameter("road.units", "Units", "", "", (),
+        group=ROAD, source=OURS, roads=("profile",), kind="units",
+        description="Units of x and y in the file, such as {x: ft, y: in}: m, mm, cm, dm, km, ft or in. Left out: what "
+        "its headings say, else m."),
     Parameter("road.points", "Profile", "", "", "0 0, 6 0, 7 0.1, 8 0.05, 10 0.05",
         group=ROAD, source=OURS, roads=("profile",), kind="points",
         description="The profile itself: x y, x y, … in m, at most 200001 points; what the file says, once it has "
@@ -391,7 +404,8 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter("road.start", "Start of road", "x_s", "m", None, -50, 1000, 2, 50, 0.1,
         group=ROAD, source=OURS, roads=("sine", "profile"), optional=True,
         description="Where the waves begin, ahead of the centre of mass at the start, or the profile's first point "
-        "lies, at ground level. Left out: 1 m ahead of the first wheel; for a profile, where its points say.",
+        "lies, at ground level. Left out: 1 m ahead of the first wheel; for a profile, where its points say, "
+        "unless they begin beyond 1000 m.",
         growth="The vehicle drives on level ground for longer."),
     Parameter("road.ramp", "Run-in", "ℓ", "m", None, 0, 1000, 0.5, 50, 0.1,
         group=ROAD, source=OURS, roads=("sine", "step"), optional=True,

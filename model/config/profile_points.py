@@ -1,4 +1,4 @@
-"""A measured profile as text: points "x y, x y, …" of a configuration, or the rows of a CSV file. m."""
+"""The points of a measured profile: what makes a road, and their text in a configuration, "x y, x y, …" in m."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ import numpy as np
 from model.config.parameters import STEEPEST, number_text
 
 POINT_LIMIT = 200_001  # 10 km, every 5 cm
-FILE_LIMIT = 20_000_000  # bytes of a CSV file, and characters of a text
-FURTHEST = 20_000.0  # m, of a point from the origin
+FILE_LIMIT = 20_000_000  # bytes of a file, and characters of a text
+FURTHEST = 1e6  # m, of a point from the origin: stations are counted from afar
+STATIONED = 1000.0  # m: a profile whose first point lies beyond begins at a station, and is put ahead of the vehicle
 HIGHEST = 10_000.0  # m, of a point above or below it: a survey's heights
 NEAREST = 0.001  # m between two points
 
@@ -33,25 +34,12 @@ def points_text(x: np.ndarray, y: np.ndarray) -> str:
     return ", ".join(f"{a!r} {b!r}" for a, b in zip(x.tolist(), y.tolist(), strict=True))
 
 
-def read_csv(data: bytes) -> str:
-    """The text of a configuration for a file of two columns, x and y in m, with or without a line of headings.
-
-    Columns end in a comma, a semicolon, a tab or blanks; beside semicolons or tabs, a comma is a decimal point.
-    Raises PointsError.
-    """
-    if len(data) > FILE_LIMIT:
-        raise PointsError(f"the file is larger than {FILE_LIMIT} bytes")
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise PointsError("the file is not UTF-8 text") from None
-    text = text.replace("\r\n", "\n").replace("\r", "\n")
-    text = text.replace(",", "." if ";" in text or "\t" in text else " ").replace(";", " ")
-    lines = text.split("\n")
-    number = [k for k, line in enumerate(lines, 1) if line and not line.isspace()]
-    if number and lines[number[0] - 1].lstrip()[0] not in "+-.0123456789":
-        del number[0]  # headings
-    return points_text(*_checked([lines[k - 1] for k in number], lambda row: f"line {number[row]}"))
+def span_text(x: np.ndarray, y: np.ndarray) -> str:
+    """What points (K,) in m span, in words: "241 points, 0 to 60 m, heights −31 to 45 mm"."""
+    unit, factor = ("mm", 1e3) if np.abs(y).max() < 1.0 else ("m", 1.0)
+    low, high = (f"{value:.4g}".replace("-", "\u2212") for value in (y.min() * factor + 0.0, y.max() * factor + 0.0))
+    first, last = (number_text(round(float(value), 2) + 0.0).replace("-", "\u2212") for value in (x[0], x[-1]))
+    return f"{len(x)} points, {first} to {last} m, heights {low} to {high} {unit}"
 
 
 def _checked(rows: list[str], name: Callable[[int], str]) -> tuple[np.ndarray, np.ndarray]:
@@ -65,6 +53,16 @@ def _checked(rows: list[str], name: Callable[[int], str]) -> tuple[np.ndarray, n
     if table.shape != (len(rows), 2):
         table = _one_by_one(rows, name)
     x, y = table.T.copy()
+    check(x, y, name)
+    x.setflags(write=False)
+    y.setflags(write=False)
+    return x, y
+
+
+def check(x: np.ndarray, y: np.ndarray, name: Callable[[int], str]) -> None:
+    """Raise PointsError for the first of the points (K,) in m that makes no road; `name` says where a row stands."""
+    if not 2 <= len(x) <= POINT_LIMIT:
+        raise PointsError(f"{len(x)} points; give 2 to {POINT_LIMIT}")
 
     def refuse(bad: np.ndarray, message: str) -> None:
         if bad.any():
@@ -73,6 +71,8 @@ def _checked(rows: list[str], name: Callable[[int], str]) -> tuple[np.ndarray, n
     refuse(~(np.abs(x) <= FURTHEST), f"x must be from -{number_text(FURTHEST)} to {number_text(FURTHEST)} m")
     refuse(~(np.abs(y) <= HIGHEST), f"y must be from -{number_text(HIGHEST)} to {number_text(HIGHEST)} m")
     gap = np.diff(x)
+    if (gap < 0.0).all():
+        raise PointsError("x falls all along, as it must grow from point to point: turn the order of the lines round")
     refuse(
         np.append(False, gap < 0.999 * NEAREST),
         f"x must grow from point to point, by {number_text(1e3 * NEAREST)} mm at least",
@@ -81,9 +81,6 @@ def _checked(rows: list[str], name: Callable[[int], str]) -> tuple[np.ndarray, n
         np.append(False, np.abs(np.diff(y)) > STEEPEST * gap),
         f"steeper than 85°, which no wheel climbs; let y change by less than {STEEPEST:.3g} times x's change",
     )
-    x.setflags(write=False)
-    y.setflags(write=False)
-    return x, y
 
 
 def _one_by_one(rows: list[str], name: Callable[[int], str]) -> np.ndarray:

@@ -18,12 +18,13 @@ from model.config.parameters import (
     PART_LIMIT,
     SECTIONS,
     STEEPEST,
+    UNITS,
     WHEEL_COUNT,
     Parameter,
     Value,
     number_text,
 )
-from model.config.profile_points import PointsError, points
+from model.config.profile_points import STATIONED, PointsError, points
 
 SAMPLE_LIMIT = 100_000  # stored samples of one run
 STEP_LIMIT = 5_000_000  # fixed steps of one run
@@ -89,7 +90,7 @@ def _converted(given: Any, faults: list[Fault]) -> dict[str, Value]:
         if value is None and parameter.optional:
             continue
         try:
-            values[path] = _convert(parameter, value)
+            values[path] = convert(parameter, value)
         except PointsError as error:
             faults.append(Fault(path, shorten(value), str(error)))
         except (ValueError, OverflowError):
@@ -176,7 +177,7 @@ def _flatten(given: Any, section: str, faults: list[Fault]) -> Iterator[tuple[st
             faults.append(unknown_fault(path, value))
 
 
-def _convert(parameter: Parameter, value: Any) -> Value:
+def convert(parameter: Parameter, value: Any) -> Value:
     """The value in the parameter's kind. Raises ValueError or OverflowError when it is not allowed."""
     match parameter.kind:
         case "number":
@@ -203,6 +204,10 @@ def _convert(parameter: Parameter, value: Any) -> Value:
                 text = " ".join(value.split())
                 if text.isprintable() and len(text) <= parameter.high:
                     return text
+        case "columns":
+            return _columns(value)
+        case "units":
+            return _units(value)
         case "points":
             if isinstance(value, str):
                 text = value if value.isprintable() else " ".join(value.split())
@@ -212,6 +217,34 @@ def _convert(parameter: Parameter, value: Any) -> Value:
             if isinstance(value, list | tuple) and len(value) <= PART_LIMIT:
                 return tuple(value)
     raise ValueError
+
+
+def _columns(value: Any) -> tuple[str, ...]:
+    """Names or numbers of columns."""
+    names = value.split(",") if isinstance(value, str) else [value] if isinstance(value, int) else value
+    if not isinstance(names, list | tuple) or len(names) > 2:
+        raise ValueError
+    if not all(isinstance(name, str | int) and not isinstance(name, bool) for name in names):
+        raise ValueError
+    texts = tuple(" ".join(str(name).split()) for name in names)
+    if not all(text and text.isprintable() and len(text) <= 100 for text in texts):
+        raise ValueError
+    return texts
+
+
+def _units(value: Any) -> tuple[str, ...]:
+    """The unit of x and that of y, empty where the heading says it; one for both may be given alone."""
+    if isinstance(value, dict):
+        if not set(value) <= {"x", "y"}:
+            raise ValueError
+        value = (value.get("x", ""), value.get("y", "")) if value else ()
+    elif isinstance(value, str):
+        value = (value, value)
+    if not isinstance(value, list | tuple) or len(value) not in (0, 2):
+        raise ValueError
+    if not all(isinstance(unit, str) and (unit in UNITS or not unit) for unit in value):
+        raise ValueError
+    return tuple(value)
 
 
 _FLAG_WORDS = {"true": True, "yes": True, "on": True, "false": False, "no": False, "off": False}
@@ -377,6 +410,8 @@ def _profile_ahead(text: str, start: float | None, wheel_radius: float, *layout:
     if start is not None:
         return None
     x, y = points(text)
+    if x[0] > STATIONED:
+        return None
     front = wheel_positions(*layout)[0]
     under = np.append(y[x <= front + wheel_radius], [y[0], np.interp(front + wheel_radius, x, y)])
     if np.abs(under).max() <= LEVEL:

@@ -25,8 +25,8 @@ import numpy as np
 
 from model.compiled import compiled, inlined
 from model.dynamics import suspension
-from model.dynamics.contact import block, contact_forces
-from model.dynamics.lanes import INT_E, LANES, SCRATCH_SIZE, SPEED, C, P, W, Y
+from model.dynamics.kernel_contact import block, contact_forces
+from model.dynamics.lanes import INT_E, LANES, SCRATCH_SIZE, SPEED, WORK, C, P, W, Y
 
 
 @inlined
@@ -165,6 +165,7 @@ def _fold_chains(lanes, c, s, p, w):
         u = c.theta + on_arm * (theta_a - c.theta) - theta_l
         u_dot = c.omega + on_arm * (omega_a - c.omega) - omega_l
         tau_l = p[i + P.k_sl] * u + p[i + P.c_sl] * u_dot + p[i + P.tau_0l]
+        w[i + W.power] = tau_a * (omega_a - c.omega) - tau_l * u_dot
         tau_c = -tau_a - (1.0 - on_arm) * tau_l
         tau_a -= on_arm * tau_l
 
@@ -286,6 +287,7 @@ def rates(lanes, road, t, y, dy, work):
     c = Chassis(y[0], y[1], y[2], y[3], y[4], y[5], cos, sin)
     M_xx, M_xy, M_yy, M_xt, M_yt, M_tt = lanes.m_c, 0.0, lanes.m_c, 0.0, 0.0, lanes.I_c
     Q_x, Q_y, Q_t = 0.0, -lanes.weight_c, tau_c
+    power = 0.0
     for b in range(count):  # in a loop of its own, or the compiler entangles it with the next and leaves the lanes
         s, _, p, w = block(lanes, b, y, dy, work)
         _torsion_bars(lanes, c.theta, c.omega, s, p, w)
@@ -296,6 +298,8 @@ def rates(lanes, road, t, y, dy, work):
             M_xx, M_xy, M_yy = M_xx + w[i + W.M_xx], M_xy + w[i + W.M_xy], M_yy + w[i + W.M_yy]
             M_xt, M_yt, M_tt = M_xt + w[i + W.M_xt], M_yt + w[i + W.M_yt], M_tt + w[i + W.M_tt]
             Q_x, Q_y, Q_t = Q_x + w[i + W.Q_x], Q_y + w[i + W.Q_y], Q_t + w[i + W.Q_t]
+            power += w[i + W.power] + w[i + W.power_w] + w[i + W.power_v]
+            power -= turning * (w[i + W.f_n_w] * s[i + Y.omega_w] + w[i + W.f_n_v] * s[i + Y.omega_v])
 
     # The root: 3×3 for the chassis; with prescribed drive its a_x is given by eq. (14) and λ_45 balances that row
     if lanes.prescribed:
@@ -312,7 +316,11 @@ def rates(lanes, road, t, y, dy, work):
 
     dy[0], dy[1], dy[2] = y[3], y[4], y[5]
     dy[3], dy[4], dy[5] = a_x, a_y, alpha
-    dy[INT_E], dy[INT_E + 1] = int_e_dot, 0.0
+    dy[INT_E] = int_e_dot
+    power += tau_c * c.omega
+    if lanes.prescribed:
+        power += (M_xx * a_x + M_xy * a_y + M_xt * alpha - Q_x) * c.v_x
+    dy[WORK] = power
     for b in range(count):
         s, ds, p, w = block(lanes, b, y, dy, work)
         _back_out(lanes, a_x, a_y, alpha, turning, s, ds, p, w)

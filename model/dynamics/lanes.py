@@ -5,7 +5,9 @@ of them make a block. All that the kernel keeps of a block stands in rows of eig
 one instruction does the same for two, four or eight chains. Lanes without a body (the last wheel carries no imaginary
 arm, and blocks are filled up) have no mass, no weight, no spring and no ground; what stands in their state stays zero.
 
-Flat state: a head of x, y, θ, ẋ, ẏ, θ̇ of the chassis and ∫e, then the rows of each block in STATE's order.
+Flat state: a head of x, y, θ, ẋ, ẏ, θ̇ of the chassis, ∫e and the work done, then the rows of each block in STATE's
+order. The work is what all forces but weight and joints have done since the start, J: nothing depends on it, but the
+kinetic energy must have grown by it.
 """
 
 from __future__ import annotations
@@ -21,8 +23,8 @@ from model.dynamics.vehicle import Stops, System
 
 LANES = 8
 AT_ONCE = 4  # lanes are used by so many
-HEAD = 8  # entries before the first block: seven, and one so that blocks begin at a multiple of eight
-SPEED, INT_E = 3, 6  # of them: ẋ, ∫e
+HEAD = 8  # entries before the first block
+SPEED, INT_E, WORK = 3, 6, 7  # of them: ẋ, ∫e, the work done
 
 BODIES = ("a", "w", "l", "v")
 COORDINATES = ("x", "y", "theta", "v_x", "v_y", "omega")
@@ -41,13 +43,13 @@ CONSTANTS = (
 )
 CONTACT = (  # of a wheel
     *("X", "s", "u", "c_0", "c_1", "c_2", "c_3", "c_4", "c_5", "final"),  # what `approach` gives; then 1 if it sufficed
-    *("f_n", "f_t", "F_x", "F_y"),
+    *("f_n", "f_t", "F_x", "F_y", "z", "power"),
 )
 ARM = ("p_x", "p_y", "tip_x", "tip_y", "gamma_x", "gamma_y", "e_x", "e_y", "T", "at_pivot_x", "at_pivot_y")
 SCRATCH = (
     *(f"{name}_{body}" for body in "wv" for name in CONTACT),
     *(f"{name}_{body}" for body in "al" for name in ARM),
-    *("tau_a", "c_x", "c_y", "drift"),
+    *("tau_a", "power", "c_x", "c_y", "drift"),
     *("M_xx", "M_xy", "M_yy", "M_xt", "M_yt", "M_tt", "Q_x", "Q_y", "Q_t"),  # what a chain adds to the chassis
 )
 

@@ -85,6 +85,12 @@ class System(NamedTuple):
         return slice(1 + 2 * self.n + self.m, 1 + 2 * (self.n + self.m))
 
 
+def kinetic_energy(system: System, v: np.ndarray) -> np.ndarray:
+    """J (...,) of all bodies with velocities v (..., B, 3), spinning included."""
+    inertia = np.column_stack([system.mass, system.mass, system.inertia])
+    return (inertia * v**2).sum(axis=(-2, -1)) / 2
+
+
 def build_system(config: Config) -> System:
     """The System that a configuration describes, with the preloads that hold the design pose at rest."""
     vehicle = config.vehicle

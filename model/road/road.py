@@ -119,11 +119,31 @@ def profile_of(road: configuration.Road, front_wheel: float, radius: float, reac
         case configuration.RandomRoad():
             return _random(road, ahead, radius)
         case configuration.ProfileRoad():
-            return _measured(road)
+            return _measured(road, ahead, radius)
         case configuration.SumRoad():
             return shapes.total([profile_of(part, front_wheel, radius, reach) for part in road.parts], reach, FINEST)
         case _:
             return shapes.PLACED[type(road)](road)
+
+
+def profile_start(config: Config) -> float | None:
+    """x of the first measured point of a road, m; None where the road has none."""
+    return min((float(x[0]) for x in _measured_x(config)), default=None)
+
+
+def profile_end(config: Config) -> float | None:
+    """x of the last measured point of a road, m, behind which it is level; None where the road has none or goes on."""
+    roads = config.road.parts if isinstance(config.road, configuration.SumRoad) else (config.road,)
+    if any(isinstance(road, configuration.SineRoad | configuration.RandomRoad) for road in roads):
+        return None
+    return max((float(x[-1]) for x in _measured_x(config)), default=None)
+
+
+def _measured_x(config: Config) -> list[np.ndarray]:
+    """x (K,) of the points of each measured profile, m."""
+    roads = config.road.parts if isinstance(config.road, configuration.SumRoad) else (config.road,)
+    ahead = config.vehicle.road_wheels.x[0] + RAMP_AHEAD
+    return [shapes.placed(road, ahead)[0] for road in roads if isinstance(road, configuration.ProfileRoad)]
 
 
 # A slider of the vehicle leaves these as they are.

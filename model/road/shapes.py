@@ -16,11 +16,16 @@ import numpy as np
 
 from model.config import config as configuration
 from model.config.parameters import STEEPEST
-from model.config.profile_points import points
+from model.config.profile_points import STATIONED, points
 from model.road.profile import Derivatives, Piece, Profile, distinct, level, ramp, spline, weighted
 from model.road.table import SAME
+from model.road.thinning import thinned
 
 SHORTEST_RAMP = 1e-4  # m: over less, waves grow at once
+DENSE = 0.3  # m between measured points that are samples of a curve, at most
+SHARP = 0.5  # change of slope that is an edge, however dense the points are
+ROUNDED = 0.05  # m on either side of a measured corner over which it is rounded, at most …
+MISSED = 0.001  # m: … and so that the road misses the corner by no more
 CELLS_PER_WAVE = 128  # a quintic of this length misses a sine by 1e-13 of its amplitude
 
 
@@ -98,32 +103,69 @@ PLACED: dict[type, Callable[[Any], Profile]] = {
 }
 
 
-def measured(road: configuration.ProfileRoad) -> Profile:
-    """A smooth line through the points: from the first on at ground level, behind the last one level.
+def measured(road: configuration.ProfileRoad, ahead: float, radius: float) -> Profile:
+    """A line through the points: before the first at ground level, behind the last one level.
 
-    Slope and curvature are continuous, each is of the points nearby only, and between two points the line stays within
-    their heights: a kerb or a straight face stays what it is, where a cubic spline would swing. Slopes are those of
-    PCHIP (Fritsch and Butland: the weighted harmonic mean of the slopes to both neighbours, level at a crest), at most
-    twice the gentler of the two; curvatures are those of the cubics with these slopes on either side, the smaller of
-    the two where they bend the same way, else none.
+    ahead: where a profile begins that its stations put far away, m; radius: of the wheels, m.
+
+    Points are of two sorts. Where a point, both its neighbours and theirs lie within DENSE of each other, and the line
+    turns there by less than SHARP, it is a sample of a curve: road profilers take one every 0.25 m or closer. Any other
+    is a corner that somebody gave, or an edge: straight lines lead to it and on. Slope and curvature are continuous.
+
+    A corner between lines of slopes s₁, s₂ is rounded within r on either side: there h is the quintic that joins the
+    lines, its slope goes from s₁ to s₂ and nowhere beyond. It misses the point by 3/16 |s₂ − s₁| r; r is at most
+    ROUNDED and half of either line, and keeps that below MISSED.
+
+    Through samples runs a curve that stays within the heights of neighbours, where a cubic spline would swing. Slopes
+    are those of PCHIP (Fritsch and Butland: the weighted harmonic mean of the slopes to both neighbours, level at a
+    crest), at most twice the gentler of the two; curvatures are those of the cubics with these slopes on either side,
+    the smaller of the two where they bend the same way, else none.
     """
-    x, y = points(road.points)
-    if road.start is not None:
-        x, y = x - x[0] + road.start, y - y[0]
+    x, y = thinned(*placed(road, ahead), radius)
     gap = np.diff(x)
-    rise = np.diff(y) / gap
+    rise = np.concatenate([[0.0], np.diff(y) / gap, [0.0]])
+    turn = np.abs(np.diff(rise))
+    near = np.concatenate([[False, False], gap <= DENSE, [False, False]])
+    curved = near[:-3] & near[1:-2] & near[2:-1] & near[3:] & (turn < SHARP)
+
+    half = np.concatenate([[np.inf], gap / 2, [np.inf]])
+    r = np.minimum(np.minimum(half[:-1], half[1:]), ROUNDED)
+    r = np.where(curved, 0.0, np.minimum(r, MISSED / (3 / 16) / np.maximum(turn, 1e-9)))
+    slope, bend = _curve(gap, rise[1:-1])
+    before = np.where(curved, slope, rise[:-1])
+    behind = np.where(curved, slope, rise[1:])
+    bend = np.where(curved, bend, 0.0)
+    nodes = np.column_stack([x - r, x + r]).ravel()
+    h = np.column_stack([y - before * r, y + behind * r]).ravel()
+    h1, h2 = np.column_stack([before, behind]).ravel(), np.repeat(bend, 2)
+    keep = np.append(True, np.diff(nodes) > SAME)  # a sample is one node, and so is where two roundings meet
+    return Profile([spline(nodes[keep], h[keep], h1[keep], h2[keep])])
+
+
+def _curve(gap: np.ndarray, rise: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Slope and curvature, 1/m, (K,) at points that lie `gap` (K − 1,) apart, m, with slopes `rise` between them."""
     before, ahead = rise[:-1], rise[1:]
     same = before * ahead > 0.0
     share = (gap[:-1] + 2 * gap[1:]) / (3 * (gap[:-1] + gap[1:]))  # of the slope behind a point
     mean = before * ahead / np.where(same, share * ahead + (1 - share) * before, 1.0)
     gentler = np.minimum(np.abs(before), np.abs(ahead))
-    slope = np.zeros(len(x))
+    slope = np.zeros(len(gap) + 1)
     slope[1:-1] = np.where(same, np.sign(before) * np.minimum(np.abs(mean), 2 * gentler), 0.0)
     into = (2 * slope[:-1] + 4 * slope[1:] - 6 * rise)[:-1] / gap[:-1]  # the cubics' curvatures at inner points
     out = (6 * rise - 4 * slope[:-1] - 2 * slope[1:])[1:] / gap[1:]
-    bend = np.zeros(len(x))
+    bend = np.zeros(len(gap) + 1)
     bend[1:-1] = np.where(into * out > 0.0, np.sign(into) * np.minimum(np.abs(into), np.abs(out)), 0.0)
-    return Profile([spline(x, y, slope, bend)])
+    return slope, bend
+
+
+def placed(road: configuration.ProfileRoad, ahead: float) -> tuple[np.ndarray, np.ndarray]:
+    """x and y (K,) of a profile's points on the road, m: where they say, or moved so that the first lies at the start.
+
+    A first point beyond STATIONED is a station of a survey: it is put `ahead`.
+    """
+    x, y = points(road.points)
+    start = ahead if road.start is None and x[0] > STATIONED else road.start
+    return (x, y) if start is None else (x - x[0] + start, y - y[0])
 
 
 def total(profiles: list[Profile], reach: float, finest: float) -> Profile:

@@ -20,7 +20,8 @@ from model.road.nearest_point import RoadTable
 from model.road.road import build_road
 from model.road.table import REACH
 from model.simulation.integrate import Integration, Samples, Status
-from model.simulation.simulate import starting_state, warm_up
+from model.simulation.peaks import Peaks
+from model.simulation.simulate import sampled_arrays, starting_state, warm_up
 from model.simulation.steppers import STEPS_PER_SECOND
 from model.simulation.trajectory import RunStatistics, Trajectory
 
@@ -54,7 +55,7 @@ class LiveDrive:
         self.config = config
         self.distance = 0.0  # m from where it started to the present origin
         self._shapes = Shapes.of(build_road(config))
-        self._past: deque[tuple[np.ndarray, Samples]] = deque()
+        self._past: deque[tuple[np.ndarray, Samples, Peaks]] = deque()
         self._seconds = 0.0
         self._seen_to = -np.inf  # m: as far as the road can be seen
         self._run = Integration.of(config.simulation, system, self._lay(system, y), y, np.inf, CAPACITY)
@@ -154,12 +155,21 @@ class LiveDrive:
         """
         since = self.time - seconds
         past = [part for part in self._past if part[0][-1] >= since] or [self._past[-1]]
-        t = np.concatenate([times for times, _ in past])
-        samples = Samples._make(np.concatenate(parts) for parts in zip(*(kept for _, kept in past), strict=True))
+        t = np.concatenate([times for times, _, _ in past])
+        samples = Samples._make(np.concatenate(parts) for parts in zip(*(kept for _, kept, _ in past), strict=True))
         run = self._run
         status, advice = ("complete", "") if run.status is Status.RUNNING else run.ending
         counts = RunStatistics(run.steps, run.rejected_steps, run.evaluations, run.smallest_step, self._seconds)
-        return Trajectory(t, *samples, self._static_load, self.config, status, advice, counts)
+        return Trajectory(
+            t=t,
+            **sampled_arrays(samples),
+            static_load=self._static_load,
+            config=self.config,
+            status=status,
+            advice=advice,
+            statistics=counts,
+            tracked=Peaks.over([peaks for _, _, peaks in past]),
+        )
 
     def road(self) -> LaidRoad:
         """The road about the vehicle, in the frame of `recent`: to be seen as far as it reaches, to be touched under
@@ -179,6 +189,6 @@ class LiveDrive:
         y[places(run.system.n, run.system.m)[0][:, 0]] -= by
         self._shapes = self._shapes.moved(by)
         self.distance += by
-        for _, samples in self._past:
+        for _, samples, _ in self._past:
             samples.q[..., 0] -= by
         run.change(run.system._replace(x_0=run.system.x_0 - by), self._lay(run.system, y), y)

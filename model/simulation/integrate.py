@@ -11,15 +11,16 @@ import numpy as np
 
 from model.config.config import Simulation
 from model.dynamics.kernel import rates
-from model.dynamics.lanes import coordinates, in_lanes, make_work
+from model.dynamics.lanes import LANES, WORK, coordinates, in_lanes, make_work
 from model.dynamics.vehicle import System
 from model.road.nearest_point import RoadTable
+from model.simulation.dense import STAGES, Memory
+from model.simulation.extremes import RISING, Extremes, begin, forget, make_extremes, note
+from model.simulation.peaks import Peaks
 from model.simulation.steppers import (
     DORMAND_PRINCE,
-    STAGES,
     STEPS_PER_SECOND,
     STRETCHED,
-    Memory,
     Samples,
     Span,
     Status,
@@ -94,6 +95,7 @@ class Integration:
         self.samples = make_samples(system, capacity or int(np.floor(duration * rate + 1e-9)) + 1)
         self._memory = Memory(y.copy(), np.zeros_like(y), np.zeros_like(y), np.zeros((STAGES, len(y))))
         self._work = make_work(system)
+        self._extremes = make_extremes(system)
         self._clock = make_clock(step if integrator == "rk4" else FIRST_STEP)
         self._scale = error_scale(system, rtol, atol)
         self._stiffness = self._stiffest_rate()
@@ -150,11 +152,20 @@ class Integration:
         self._stiffness = self._stiffest_rate()
         self._clock.fresh = 0
 
-    def take_samples(self) -> tuple[np.ndarray, Samples]:
-        """Times (K,), s, and copies of the samples recorded since the last call, which makes room for more."""
+    def peaks(self) -> Peaks:
+        """What was largest since the start, or since `take_samples`."""
+        return _in_order(self.system, self._extremes)
+
+    def take_samples(self) -> tuple[np.ndarray, Samples, Peaks]:
+        """Times (K,), s, and copies of the samples recorded since the last call, which makes room for more; and what
+        was largest since then.
+        """
+        peaks = self.peaks()
+        forget(self._extremes)
         first, end = int(self._clock.taken), int(self._clock.recorded)
         self._clock.taken = end
-        return np.arange(first, end) / self.rate, Samples._make(part[: end - first].copy() for part in self.samples)
+        samples = Samples._make(part[: end - first].copy() for part in self.samples)
+        return np.arange(first, end) / self.rate, samples, peaks
 
     def give_up(self) -> None:
         """End a run that takes too many steps: an endless one sets no bound itself."""
@@ -177,10 +188,11 @@ class Integration:
         t_stop = min(t_stop, self.duration)
         span = Span(float(self.rate), float(self.duration), float(t_stop), self._longest())
         problem = self.lanes, self.road, self._work, self._memory
+        kept = self.samples, self._extremes, self._clock
         if self.integrator in ADAPTIVE:
-            adaptive(ADAPTIVE[self.integrator], *problem, 1.0 / self._scale, self.samples, self._clock, span)
+            adaptive(ADAPTIVE[self.integrator], *problem, 1.0 / self._scale, *kept, span)
         elif self.integrator == "rk4":
-            runge_kutta_4(*problem, self.samples, self._clock, span)
+            runge_kutta_4(*problem, *kept, span)
         else:
             self._advance_scipy(t_stop)
         return self.status
@@ -190,7 +202,11 @@ class Integration:
         from scipy import integrate  # half a second that no other stepper needs
 
         clock, dy = self._clock, self._memory.k[0]
-        place, state = coordinates(self.system), np.zeros_like(self.y)
+        place, state = np.append(coordinates(self.system), WORK), np.zeros_like(self.y)
+        if clock.fresh == 0:
+            rates(self.lanes, self.road, self.t, self.y, dy, self._work)
+            begin(self.lanes, self._work, self._memory, self._extremes, self.t)
+            clock.fresh = 1
 
         def whole(y: np.ndarray) -> np.ndarray:
             """The flat state with its empty lanes, which the solvers do not see: nothing depends on them."""
@@ -226,7 +242,7 @@ class Integration:
 
     def _take_step(self, solver: OdeSolver, before: float, whole: Callable[[np.ndarray], np.ndarray]) -> None:
         """Book a step of a SciPy solver, from `before` to where it stands, and record the samples in it."""
-        clock = self._clock
+        clock, dy = self._clock, self._memory.k[0]
         found = trouble(self.lanes, whole(solver.y))
         if found:
             clock.status = found
@@ -237,13 +253,37 @@ class Integration:
             while clock.recorded < room and clock.recorded / self.rate <= solver.t:
                 t = clock.recorded / self.rate
                 row = clock.recorded - clock.taken
-                record(self.lanes, self.road, t, whole(within(t)), self._memory.k[0], self._work, self.samples, row)
+                record(self.lanes, self.road, t, whole(within(t)), dy, self._work, self.samples, row)
+                note(self.lanes, self._work, whole(within(t)), dy[RISING], self._extremes, t)
                 clock.recorded += 1
         clock.t = solver.t
         self.y[:] = whole(solver.y)
+        rates(self.lanes, self.road, self.t, self.y, self._memory.k[0], self._work)
+        note(self.lanes, self._work, self.y, self._memory.k[0, RISING], self._extremes, self.t)
         clock.steps += 1
         clock.smallest = min(clock.smallest, solver.t - before)
         if solver.t >= self.duration:
             clock.status = Status.COMPLETE
         elif clock.steps > self.duration * STEPS_PER_SECOND:
             clock.status = Status.TOO_MANY_STEPS
+
+
+def _in_order(system: System, extremes: Extremes) -> Peaks:
+    """What was followed in lanes, in the model's order of wheels and arms."""
+    n, m = system.n, system.m
+    arm = np.arange(n)
+    wheel = arm + arm // LANES * LANES
+    wheel = np.concatenate([wheel, wheel[:m] + LANES])
+    return Peaks(
+        load=extremes.load[wheel],
+        load_time=extremes.load_at[wheel],
+        depth=extremes.depth[wheel],
+        depth_time=extremes.depth_at[wheel],
+        air_time=extremes.air[wheel],
+        arm_high=extremes.high[arm],
+        arm_high_time=extremes.high_at[arm],
+        arm_low=extremes.low[arm],
+        arm_low_time=extremes.low_at[arm],
+        acceleration=np.array(extremes.hull[0]),
+        acceleration_time=np.array(extremes.hull[1]),
+    )

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from model.dynamics.equilibrium import rest_pose
 from model.dynamics.lanes import pack
 from model.dynamics.vehicle import System, build_system
 from model.simulation.trajectory import RunStatistics, Trajectory
+
+if TYPE_CHECKING:
+    from model.simulation.steppers import Samples
 
 CHUNK = 1.0  # s of simulated time between two looks at should_stop: about 1 ms
 
@@ -42,6 +46,23 @@ def warm_up(integrator: str = Config().simulation.integrator) -> None:
     system = build_system(config)
     y, _ = starting_state(system)
     Integration(system, build_road(config).table, y, duration=1e-3, rate=1.0, integrator=integrator).advance(1e-3)
+
+
+def sampled_arrays(samples: Samples, count: int | None = None) -> dict[str, np.ndarray]:
+    """The arrays of a Trajectory that are samples, the first so many, by their names there."""
+    named = {
+        "q": samples.q,
+        "v": samples.v,
+        "a": samples.a,
+        "normal_load": samples.f_n,
+        "traction": samples.f_t,
+        "tangential_displacement": samples.xi,
+        "drive_force": samples.F,
+        "multipliers": samples.lam,
+        "constraint_residual": samples.residual,
+        "work": samples.work,
+    }
+    return {name: values[:count] for name, values in named.items()}
 
 
 def simulate(
@@ -77,18 +98,10 @@ def simulate(
 
     status, advice = ("cancelled", "") if run.status is Status.RUNNING else run.ending
     n = run.samples_done
-    samples = run.samples
     return Trajectory(
         t=np.arange(n) / settings.output_rate,
-        q=samples.q[:n],
-        v=samples.v[:n],
-        a=samples.a[:n],
-        normal_load=samples.f_n[:n],
-        traction=samples.f_t[:n],
-        tangential_displacement=samples.xi[:n],
-        drive_force=samples.F[:n],
-        multipliers=samples.lam[:n],
-        constraint_residual=samples.residual[:n],
+        **sampled_arrays(run.samples, n),
+        tracked=run.peaks(),
         static_load=static_load,
         config=config,
         status=status,

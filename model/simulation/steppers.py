@@ -14,11 +14,15 @@ import numpy as np
 
 from model.compiled import compiled, inlined
 from model.dynamics.kernel import constraint_residual, loads, multipliers, rates
-from model.dynamics.lanes import INT_E, places, state_size
+from model.dynamics.lanes import INT_E, WORK, places, state_size
 from model.dynamics.vehicle import System
+from model.simulation.dense import CUBIC, SPARE, state_within
+from model.simulation.extremes import begin, follow
 
 STEPS_PER_SECOND = 50_000  # of simulated time, at most; five hundred times what the paper's vehicle needs
 SMALLEST_STEP = 1e-10  # s
+MOST_FORCED = 100  # steps of this length until one is longer again
+OVER = 2e-7  # s that take an arm over the beginning of a stop
 FASTEST = 1e3  # m/s: a body faster than this shows that the run has diverged
 STEPS_PER_CHUNK = 5_000  # so that a stop is heeded however stiff the run
 POWERS = 30  # of the Jacobian, to find its largest eigenvalue to a few per cent
@@ -26,7 +30,8 @@ NUDGE = 1e-6  # m, rad, m/s or rad/s: a change small enough for the system to be
 SIZE_OF_SPEED = 1.0  # m/s or rad/s, what rtol is measured against: see error_scale
 SIZE_OF_POSITION = 0.1  # m or rad
 SIZE_OF_DISPLACEMENT = 0.1  # m
-LIVELY = 0.75  # m/s: where a body rises or falls faster than this, errors may be larger in proportion
+NO_LIMIT = 1e30
+LIVELY = 1.5  # m/s: where a body rises or falls faster than this, errors may be larger in proportion
 
 
 class Status(IntEnum):
@@ -53,13 +58,14 @@ class Samples(NamedTuple):
     F: np.ndarray  # (N,)
     lam: np.ndarray  # (N, rows of C)
     residual: np.ndarray  # (N,)
+    work: np.ndarray  # (N,) J
 
 
 def make_samples(system: System, count: int) -> Samples:
-    """Room for that many samples, in one piece: a large one is had from the system in large pages, which is quicker."""
+    """Room for that many samples, in one piece: the system gives a large one in large pages, which is quicker."""
     B, W = len(system.mass), len(system.wheel)
     rows = 2 * len(system.joint_i) + int(system.prescribed)
-    shapes = [(count, *shape) for shape in [(B, 3), (B, 3), (B, 3), (W,), (W,), (W,), (), (rows,), ()]]
+    shapes = [(count, *shape) for shape in [(B, 3), (B, 3), (B, 3), (W,), (W,), (W,), (), (rows,), (), ()]]
     ends = np.cumsum([0, *map(prod, shapes)])
     block = np.empty(ends[-1])
     parts = (block[first:end].reshape(shape) for first, end, shape in zip(ends, ends[1:], shapes, strict=False))
@@ -78,6 +84,7 @@ CLOCK = np.dtype(
         ("recorded", "i8"),  # samples
         ("taken", "i8"),  # of these, taken away to make room
         ("status", "i8"),  # a Status
+        ("forced", "i8"),  # steps accepted though their error was too large, since the last of a usual length
         ("fresh", "i8"),  # 1 when the derivative at y is known
     ]
 )
@@ -86,17 +93,8 @@ CLOCK = np.dtype(
 def make_clock(step: float) -> Any:
     """What a stepper carries from step to step: a record of CLOCK's fields at t = 0. step: the first to be tried, s."""
     clock = np.recarray(1, CLOCK)
-    clock[0] = (0.0, step, np.inf, 1e-4, 0, 0, 0, 0, 0, Status.RUNNING, 0)
+    clock[0] = (0.0, step, np.inf, 1e-4, 0, 0, 0, 0, 0, Status.RUNNING, 0, 0)
     return clock[0]
-
-
-class Memory(NamedTuple):
-    """A stepper's arrays, its own to change; `size` entries of the flat state."""
-
-    y: np.ndarray  # (size,) the state now
-    y_new: np.ndarray  # (size,) at the end of a step
-    between: np.ndarray  # (size,) at a stage or a sample
-    k: np.ndarray  # (STAGES, size) derivatives: k[0] at y, then of the stages
 
 
 class Span(NamedTuple):
@@ -118,7 +116,9 @@ def error_scale(system: System, rtol: float, atol: float) -> np.ndarray:
     size = np.ones(state_size(system.n))
     size[body[:, :3]], size[body[:, 3:]] = SIZE_OF_POSITION, SIZE_OF_SPEED
     size[wheel] = size[INT_E] = SIZE_OF_DISPLACEMENT
-    return atol + rtol * size
+    scale = atol + rtol * size
+    scale[WORK] = NO_LIMIT  # a check of the motion, which it must not change
+    return scale
 
 
 @compiled
@@ -137,6 +137,7 @@ def record(lanes, road, t, y, dy, work, samples, k):
         samples.xi[k, wheel] = y[lanes.xi_place[wheel]]
     samples.F[k] = work.F[0]
     samples.residual[k] = constraint_residual(lanes, t, y, work)
+    samples.work[k] = y[WORK]
 
 
 @compiled
@@ -273,11 +274,6 @@ STRETCHED = Tableau(
 )
 
 
-STAGES = 7  # rows of Memory.k
-SPARE = 1  # the row that is lent to samples: once a step is accepted, nothing needs it
-CUBIC = np.zeros(STAGES)  # nothing to add to cubic Hermite
-
-
 @inlined
 def _stage_state(weights, stage, h, memory):
     """The state of a stage: y + h Σ w_j k_j over the stages before it. Written out, each needs one pass."""
@@ -320,94 +316,135 @@ def _error_of(weights, h, memory, over_scale, states):
 
 
 @inlined
-def _state_within(dense, last, h, theta, memory):
-    """The state at t + θ h in the step from y to y_new: cubic Hermite, and what the tableau adds to it.
-
-    k[0] and k[last]: the derivatives at both ends.
-    """
-    size = len(memory.y)
-    y, y_new, out, k = memory.y, memory.y_new, memory.between, memory.k
-    first, final = k[0], k[last]
-    rest = 1.0 - theta
-    risen, begin, end = theta * theta * (3.0 - 2.0 * theta), h * theta * rest * rest, h * theta * theta * rest
-    for i in range(size):  # of few arrays at a time, so that it is done in lanes
-        out[i] = y[i] + risen * (y_new[i] - y[i]) + begin * first[i] - end * final[i]
-    d1, _, d3, d4, d5, d6, d7 = dense
-    if d1 != 0.0:
-        k3, k4, k5, k6, k7 = k[2], k[3], k[4], k[5], k[6]
-        for i in range(size):
-            out[i] += end * rest * (d1 * first[i] + d3 * k3[i] + d4 * k4[i] + d5 * k5[i] + d6 * k6[i] + d7 * k7[i])
-
-
-@inlined
 def _record_step(dense, last, lanes, road, work, memory, samples, clock, rate, t_new):
     """Record the samples of the step from clock.t to t_new, as far as there is room."""
     room = len(samples.residual) + clock.taken
     h = t_new - clock.t
     while clock.recorded < room and clock.recorded / rate <= t_new:
         t = clock.recorded / rate
-        _state_within(dense, last, h, (t - clock.t) / h, memory)
+        state_within(dense, last, h, (t - clock.t) / h, memory)
         record(lanes, road, t, memory.between, memory.k[SPARE], work, samples, clock.recorded - clock.taken)
         clock.recorded += 1
 
 
 @inlined
-def _move_on(memory, last, clock, h, t_new):
+def _move_on(memory, last, clock, h, t_new, end):
     """Take over the end of a step."""
     for i in range(len(memory.y)):
         memory.y[i], memory.k[0, i] = memory.y_new[i], memory.k[last, i]
     clock.t = t_new
     clock.steps += 1
-    clock.smallest = min(clock.smallest, h)
+    if t_new < end:  # the last step is as short as is left
+        clock.smallest = min(clock.smallest, h)
 
 
 @inlined
-def _begin(lanes, road, work, memory, clock):
+def _begin(lanes, road, work, memory, extremes, clock):
     """Make sure that k[0] is the derivative at y."""
     if clock.fresh == 0:
         rates(lanes, road, clock.t, memory.y, memory.k[0], work)
+        begin(lanes, work, memory, extremes, clock.t)
         clock.evaluations += 1
         clock.fresh = 1
 
 
+@inlined
+def _before_stop(lanes, memory, h):
+    """How long a step from y to y_new of h s may be so that no arm meets a stop in it, s; h where none does.
+
+    The force of a stop begins with a jump where its damper takes hold, which no step may contain.
+    """
+    y, y_new = memory.y, memory.y_new
+    soonest = h
+    for arm in range(lanes.n):
+        angle, rate = lanes.place[1 + arm, 2], lanes.place[1 + arm, 5]
+        u, u_new, u_dot, u_dot_new = y[2] - y[angle], y_new[2] - y_new[angle], y[5] - y[rate], y_new[5] - y_new[rate]
+        stop = 0.0
+        if u <= lanes.stops.bump < u_new:
+            stop = lanes.stops.bump
+        elif u >= lanes.stops.rebound > u_new:
+            stop = lanes.stops.rebound
+        else:
+            continue
+        low, high = 0.0, 1.0
+        for _ in range(30):  # bisection on the cubic between the ends
+            theta = 0.5 * (low + high)
+            rest = 1.0 - theta
+            between = u + theta * theta * (3.0 - 2.0 * theta) * (u_new - u)
+            between += h * theta * rest * (rest * u_dot - theta * u_dot_new)
+            if (between > stop) == (u_new > stop):
+                high = theta
+            else:
+                low = theta
+        soonest = min(soonest, low * h)
+    return soonest
+
+
+@inlined
+def _step_over(lanes, road, work, memory, extremes, clock):
+    """Move on by so short a time that nothing changes but on which side of a stop an arm is."""
+    for i in range(len(memory.y)):
+        memory.y[i] += OVER * memory.k[0, i]
+    clock.t += OVER
+    clock.fresh = 0
+    _begin(lanes, road, work, memory, extremes, clock)
+
+
 @compiled
-def adaptive(tableau, lanes, road, work, memory, over_scale, samples, clock, span):
+def adaptive(tableau, lanes, road, work, memory, over_scale, samples, extremes, clock, span):
     """Steps of a Runge–Kutta pair until t ≥ span.stop, the run's end, trouble or STEPS_PER_CHUNK tries."""
     states = 6 * len(lanes.place) + len(lanes.xi_place) + 1  # without empty lanes
     last = tableau.stages - 1
     usual, after_rejection = 0.85 / tableau.order, 1.0 / tableau.order
     most_tries = clock.steps + clock.rejected + STEPS_PER_CHUNK
     most_growth = 5.0
-    _begin(lanes, road, work, memory, clock)
+    stopped = lanes.stops.bump < np.inf or lanes.stops.rebound > -np.inf
+    planned = 0.0  # step before it was cut short at a stop
+    _begin(lanes, road, work, memory, extremes, clock)
     while clock.t < span.stop and clock.steps + clock.rejected < most_tries:
-        h = min(clock.step, span.longest)
+        h = min(min(clock.step, span.longest), span.end - clock.t)
         for stage in range(1, tableau.stages):
             _stage_state(tableau.stage[stage], stage, h, memory)
             rates(lanes, road, clock.t + tableau.time[stage] * h, memory.y_new, memory.k[stage], work)
         clock.evaluations += last
         error = _error_of(tableau.error, h, memory, over_scale, states) / liveliness(lanes, memory.y)
 
-        if error <= 1.0:
+        # At a jump of the forces no step is short enough; one of SMALLEST_STEP is too short to matter
+        if error <= 1.0 or (h <= SMALLEST_STEP and clock.forced < MOST_FORCED and np.isfinite(error)):
+            clock.forced = 0 if h > 1e3 * SMALLEST_STEP else clock.forced + (error > 1.0)
             clock.status = trouble(lanes, memory.y_new)
             if clock.status != Status.RUNNING.value:
                 break
+            if stopped:
+                free = _before_stop(lanes, memory, h)
+                if free < h:
+                    planned = max(planned, h)
+                    clock.rejected += 1
+                    if free > OVER:
+                        clock.step = free - 0.5 * OVER
+                    else:
+                        _step_over(lanes, road, work, memory, extremes, clock)
+                        clock.step, planned = planned, 0.0
+                    continue
             t_new = clock.t + h
+            follow(tableau.dense, last, lanes, road, work, memory, extremes, clock.t, h)
             _record_step(tableau.dense, last, lanes, road, work, memory, samples, clock, span.rate, t_new)
-            _move_on(memory, last, clock, h, t_new)
+            _move_on(memory, last, clock, h, t_new, span.end)
             # Proportional-integral step control
             factor = 0.9 * max(error, 1e-10) ** -usual * clock.last_error**0.04
-            clock.step = h * min(max(factor, 0.2), most_growth)
+            clock.step = max(h * min(max(factor, 0.2), most_growth), planned)
             clock.last_error = max(error, 1e-4)
             most_growth = 5.0
         else:
             clock.rejected += 1
-            most_growth = 1.0
+            most_growth, planned = 1.0, 0.0
             clock.step = h * (max(0.9 * error**-after_rejection, 0.2) if np.isfinite(error) else 0.2)
             if not np.isfinite(error):
                 memory.k[1:] = 0.0  # a stage's zero weights must not meet a NaN
-            if clock.step < SMALLEST_STEP:
+            if clock.step < SMALLEST_STEP and (h <= SMALLEST_STEP or not np.isfinite(error)):
                 clock.status = Status.STEP_TOO_SMALL.value if np.isfinite(error) else Status.NOT_FINITE.value
                 break
+            clock.step = max(clock.step, SMALLEST_STEP)
     if clock.status == Status.RUNNING.value:
         if clock.t >= span.end:
             clock.status = Status.COMPLETE.value
@@ -416,14 +453,14 @@ def adaptive(tableau, lanes, road, work, memory, over_scale, samples, clock, spa
 
 
 @compiled
-def runge_kutta_4(lanes, road, work, memory, samples, clock, span):
+def runge_kutta_4(lanes, road, work, memory, samples, extremes, clock, span):
     """Steps of the classic method, all equally long, until t ≥ span.stop, the run's end, trouble or STEPS_PER_CHUNK."""
     size, h = len(memory.y), clock.step
     y, y_new, between, k = memory.y, memory.y_new, memory.between, memory.k
     k1, k2, k3, k4 = k[0], k[1], k[2], k[3]
     last = 4  # where the derivative at y_new stands
     most_steps = clock.steps + STEPS_PER_CHUNK
-    _begin(lanes, road, work, memory, clock)
+    _begin(lanes, road, work, memory, extremes, clock)
     while clock.t < span.stop and clock.steps < most_steps:
         t = clock.t
         for i in range(size):
@@ -443,7 +480,8 @@ def runge_kutta_4(lanes, road, work, memory, samples, clock, span):
         clock.status = trouble(lanes, y_new)
         if clock.status != Status.RUNNING.value:
             break
+        follow(CUBIC, last, lanes, road, work, memory, extremes, t, h)
         _record_step(CUBIC, last, lanes, road, work, memory, samples, clock, span.rate, t_new)
-        _move_on(memory, last, clock, h, t_new)
+        _move_on(memory, last, clock, h, t_new, span.end)
     if clock.status == Status.RUNNING.value and clock.t >= span.end:
         clock.status = Status.COMPLETE.value

@@ -8,16 +8,21 @@ from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 from io import BytesIO, StringIO
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 from zipfile import BadZipFile
 
 import numpy as np
 
 from model.config.config import Config, dump_config, parse_config
-from model.dynamics.vehicle import System, build_system
+from model.dynamics.vehicle import System, build_system, kinetic_energy
 from model.files import write_whole
+from model.simulation.peaks import PEAK_NAMES, Peaks, sampled_peaks
+
+if TYPE_CHECKING:
+    from model.road.road import Road
 
 LARGEST = 1e50  # of a file's numbers: far above any run's, and their fourth powers can still be added up
+FASTEST = 100.0  # m/s: no run comes further in its time; a file's numbers may be anything
 LONGEST_TEXT = 300  # characters of a file's status and advice
 
 
@@ -51,11 +56,41 @@ class Trajectory:
     status: str  # complete | cancelled | diverged at t = …: reason
     advice: str  # what to try when it is not complete, else empty
     statistics: RunStatistics
+    work: np.ndarray | None = None  # (N,) J, done by all forces but weight and joints since the start; None: not known
+    tracked: Peaks | None = None  # by the integration; None: it was not
 
     @cached_property
     def system(self) -> System:
         """The vehicle of this run."""
         return build_system(self.config)
+
+    @cached_property
+    def peaks(self) -> Peaks:
+        """What was largest: as the integration found it, or else at the samples."""
+        return self.tracked or sampled_peaks(self.system, self.t, self.q, self.a, self.normal_load)
+
+    @property
+    def energy_error(self) -> float | None:
+        """Energy that is not accounted for, as a share of what was turned over; None where the work is not known.
+
+        What the kinetic energy and the height gained beyond the work done, at worst, over the motion at the start and
+        every rise and fall of the kinetic energy and the height since. The work is integrated with the state, so that
+        this tells how exact the motion is, whatever the sample rate; 0 where nothing was turned over.
+        """
+        if self.work is None:
+            return None
+        kinetic, gravity = kinetic_energy(self.system, self.v), self.q[:, :, 1] @ self.system.weight
+        turned_over = kinetic[:1].sum() + np.abs(np.diff(kinetic)).sum() + np.abs(np.diff(gravity)).sum()
+        gained = kinetic + gravity - self.work
+        return float(np.abs(gained - gained[:1]).max() / turned_over) if turned_over > 0 else 0.0
+
+    @property
+    def road(self) -> Road:
+        """The road under this run, as far as its wheels came: further than asked for where it rolled away downhill."""
+        from model.road.road import SPARE, build_road  # here: Numba takes a third of a second
+
+        furthest = FASTEST * self.config.simulation.duration
+        return build_road(self.config, min(float(self.q[..., 0].max(initial=0.0)), furthest) + SPARE)
 
     @property
     def complete(self) -> bool:
@@ -85,6 +120,7 @@ class Trajectory:
             counters = {f.name: arrays.pop(f.name).item() for f in fields(RunStatistics)}
             texts = {key: arrays.pop(key).item() for key in _TEXTS}
             parts = {key: arrays[key] for key in _ARRAYS}
+            added = {key: arrays[key] for key in (*_PEAKS, "work") if key in arrays}
         except (KeyError, TypeError, ValueError, EOFError, RuntimeError, BadZipFile, zlib.error) as error:
             raise ValueError(no_run) from error
         config = parse_config(str(texts.pop("config")), source=f"{name}: config")
@@ -94,13 +130,16 @@ class Trajectory:
         for key, text in texts.items():
             if not isinstance(text, str) or not text.isprintable() or len(text) > LONGEST_TEXT:
                 raise ValueError(f"{no_run}: {key} must be a text of at most {LONGEST_TEXT} printable characters")
-        for key, shape in _shapes(build_system(config), parts["t"].size).items():
-            sound = parts[key].shape == shape and parts[key].dtype == float and (np.abs(parts[key]) < LARGEST).all()
-            if not sound:
+        shapes, given = _shapes(build_system(config), parts["t"].size), parts | added
+        for key, values in given.items():
+            shape = shapes[key]
+            if not (values.shape == shape and values.dtype == float and (np.abs(values) < LARGEST).all()):
                 raise ValueError(f"{no_run}: {key} must hold {shape} finite numbers")
         if (parts["t"][:1] != 0.0).any() or (np.diff(parts["t"]) <= 0.0).any():
             raise ValueError(f"{no_run}: t must begin at 0 and grow")
-        return cls(**parts, **texts, config=config, statistics=RunStatistics(**counters))
+        tracked = Peaks(**{name: added[key] for key, name in _PEAKS.items()}) if set(_PEAKS) <= set(added) else None
+        statistics = RunStatistics(**counters)
+        return cls(**parts, **texts, config=config, statistics=statistics, work=added.get("work"), tracked=tracked)
 
     def to_bytes(self, suffix: str) -> bytes:
         """The content of the file that `save` would write: ".npz" or ".csv"."""
@@ -111,6 +150,9 @@ class Trajectory:
     def _write_npz(self, file: IO[bytes]) -> None:
         entries: dict[str, Any] = {name: getattr(self, name) for name in _ARRAYS}
         entries |= {"config": dump_config(self.config), "status": self.status, "advice": self.advice}
+        entries |= {key: getattr(self.peaks, name) for key, name in _PEAKS.items()}
+        if self.work is not None:
+            entries |= {"work": self.work, "energy_error": self.energy_error}
         np.savez_compressed(file, **entries, **asdict(self.statistics))
 
     def _write_csv(self, file: IO[bytes]) -> None:
@@ -144,8 +186,12 @@ def _shapes(system: System, N: int) -> dict[str, tuple[int, ...]]:
     shapes: dict[str, tuple[int, ...]] = {"multipliers": (N, rows), "static_load": (W,)}
     shapes |= dict.fromkeys(("q", "v", "a"), (N, B, 3))
     shapes |= dict.fromkeys(("normal_load", "traction", "tangential_displacement"), (N, W))
-    return shapes | dict.fromkeys(("t", "drive_force", "constraint_residual"), (N,))
+    shapes |= dict.fromkeys(("t", "drive_force", "constraint_residual", "work"), (N,))
+    sizes = {"arm": (system.n,), "acceleration": ()}
+    return shapes | {key: sizes.get(name.split("_")[0], (W,)) for key, name in _PEAKS.items()}
 
 
 _TEXTS = ("config", "status", "advice")
-_ARRAYS = tuple(f.name for f in fields(Trajectory) if f.name not in (*_TEXTS, "statistics"))
+_ADDED = ("work", "tracked")  # what older files do not have
+_ARRAYS = tuple(f.name for f in fields(Trajectory) if f.name not in (*_TEXTS, *_ADDED, "statistics"))
+_PEAKS = {name if name == "air_time" else f"peak_{name}": name for name in PEAK_NAMES}  # in a file -> in Peaks

@@ -85,7 +85,7 @@ def test_run_writes_what_it_shows(tmp_path):
     rows = [line.replace("│", " ").split() for line in result.stdout.splitlines()]
     load = run.normal_load
     counts = run.t >= 0.5
-    assert ["R1", f"{load[:, 0].min():.0f}", f"{load[counts, 0].mean():.0f}", f"{load[:, 0].max():.0f}"] in rows
+    assert ["R1", f"{load[:, 0].min():.0f}", f"{load[counts, 0].mean():.0f}", f"{run.peaks.load[0]:.0f}"] in rows
     assert len([row for row in rows if row and row[0][:1] in ("R", "I") and row[0][1:].isdigit()]) == 11
     rms = np.sqrt(np.mean(run.a[counts, 0, 1] ** 2))
     for words in (f"rms {rms:.4g} m/s²", "peak ", "imaginary wheels 1", "drift", "Shock at the seat 0",
@@ -113,7 +113,19 @@ def test_a_profile_is_read_where_the_command_is_given(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("bump.csv").write_text("x,y\n3,0\n4,0.1\n")
     profile = ("--set", "road.type=profile", "--set", "road.file=bump.csv")
-    assert parse_config(trackride("show", "paper", *profile).output).value("road.points") == "3.0 0.0, 4.0 0.1"
+    assert parse_config(trackride("show", "paper", *profile).stdout).value("road.points") == "3.0 0.0, 4.0 0.1"
+    assert trackride("show", "paper", *profile).stderr == (
+        "bump.csv: 2 points, 3 to 4 m, heights 0 to 100 mm; no unit named, read as m.\n"
+    )
+    in_mm = trackride("show", "paper", *profile, "--set", "road.units={x: m, y: mm}", "--set", "road.columns=[1, 2]")
+    assert parse_config(in_mm.stdout).value("road.points") == "3.0 0.0, 4.0 0.0001"
+    assert in_mm.stderr.endswith("heights 0 to 0.1 mm; x read as m, heights as mm; columns x and y.\n")
+    Path("mine.yaml").write_text("road: {type: profile, file: bump.csv, columns: [y, x], start: 3}")
+    told = trackride("show", "mine.yaml", "--set", "road.columns=[x, y]", "--set", "road.units=[ft, in]")
+    assert parse_config(told.stdout).value("road.units") == ("ft", "in")
+    assert parse_config(told.stdout).value("road.columns") == ("x", "y")
+    assert "2 points, 0.91 to 1.22 m, heights 0 to 2.54 mm; x read as ft, heights as in" in told.stderr
+    assert trackride("show", "mine.yaml", "--set", "road.columns=[[]]").exit_code == 2
     Path("bump.csv").write_text("3,0\n4,high\n")
     failed = trackride("show", "paper", *profile)
     assert failed.exit_code == 2

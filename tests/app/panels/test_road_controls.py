@@ -114,8 +114,13 @@ def test_runs_on_new_roads_have_short_names() -> None:
 
 
 def test_a_profile_stays_where_its_file_says_or_comes_ahead_of_the_vehicle() -> None:
-    assert "road.start" not in profile_changes("a.csv", b"3,0\n4,0.1\n", PAPER)
-    assert profile_changes("a.csv", b"0,5\n4,5.1\n", PAPER)["road.start"] == 2.75
+    assert "road.start" not in profile_changes("a.csv", b"3,0\n4,0.1\n", PAPER)[0]
+    assert profile_changes("a.csv", b"0,5\n4,5.1\n", PAPER)[0]["road.start"] == 2.75
+    changes, said = profile_changes("a.csv", b"x [m],z [m]\n12345.6,5\n12350,5.1\n", PAPER)
+    assert "road.start" not in changes
+    assert "its first point is a station" in said
+    config = PAPER.replace({"road.type": "profile", "road.columns": ["a", "b"], "road.units": "mm"})
+    assert config.replace(profile_changes("a.csv", b"3,0\n4,0.1\n", config)[0]).road.columns == ()
 
 
 def test_a_profile_is_opened_in_a_tab(explore: Any, open_tab: Any) -> None:

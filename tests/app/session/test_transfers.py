@@ -272,7 +272,9 @@ def test_an_uploaded_profile_becomes_the_road_or_its_faults_are_shown(rig: Rig) 
     ((name, changes_of),) = rig.workspace.calls
     assert name == "change_road"
     assert changes_of(PAPER)["road.type"] == "profile"
-    assert rig.window.said == [("Another road", "good.csv: 3 points, 3 m long, 0.1 m high.")]
+    assert rig.window.said == [
+        ("Another road", "good.csv: 3 points, 0 to 3 m, heights 0 to 100 mm; no unit named, read as m.")
+    ]
     rig.transfers.take_profile("bad.csv", b"x,y\n0,0\n1,high\n")
     rig.wait()
     assert "'high' is no number" in str(rig.window.faults[-1][1])

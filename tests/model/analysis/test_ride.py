@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from model import load_config, simulate
+from model.analysis.energy import energy_balance
 from model.analysis.ride import imaginary_share, penetration, summary, suspension_travel, warnings, wheel_state
 from model.analysis.signals import window
 from model.config.config import Config
@@ -13,6 +17,7 @@ from model.dynamics.vehicle import build_system
 from model.road.road import build_road
 from model.simulation.trajectory import RunStatistics, Trajectory
 
+FIELD = Path(__file__).parents[2] / "field"
 RATE = 200.0
 PAPER = Config()
 FLAT = Config().replace({"road.type": "flat", "simulation.output_rate": RATE})
@@ -145,7 +150,7 @@ def test_an_arm_turned_beyond_45_degrees():
     run.q[3, 2, 2] = 0.1 - np.radians(44)
     assert whats(run) == []
     run.q[3, 2, 2] = 0.1 - np.radians(50)
-    assert whats(run) == [f"Road arm 2 turned by -50° (t = {3 / RATE:.2f} s)"]
+    assert whats(replace(run)) == [f"Road arm 2 turned by -50° (t = {3 / RATE:.2f} s)"]  # anew: a run keeps its peaks
 
 
 def test_a_wheel_sunk_deeper_than_a_tenth_of_its_radius():
@@ -215,9 +220,12 @@ def test_means_are_of_the_window_and_the_largest_values_of_the_whole_run():
     np.testing.assert_allclose(figures.load_rms, np.sqrt((run.normal_load[counts] ** 2).mean(axis=0)))
     np.testing.assert_allclose(figures.load_coefficient, run.normal_load[counts].std(axis=0) / run.static_load)
     assert figures.imaginary_share == imaginary_share(run.normal_load[counts], 6)
+    np.testing.assert_array_equal(figures.load_max, run.peaks.load)
+    assert figures.acceleration_peak == run.peaks.acceleration
     run.normal_load[-1], run.a[-1, 0, 1] = 1e6, -100
-    assert (summary(run).load_max == 1e6).all()
-    assert summary(run).acceleration_peak == 100
+    at_samples = summary(replace(run, tracked=None))
+    assert (at_samples.load_max == 1e6).all()
+    assert at_samples.acceleration_peak == 100
 
 
 def test_a_run_that_is_too_short_for_its_figures_says_so():
@@ -307,3 +315,32 @@ def test_a_rolling_wheel_of_the_papers_run_hardly_slips():
     k = np.searchsorted(run.t, 4.3217)
     low, high = np.sort(run.normal_load[[k - 1, k], 3])
     assert low <= states[3].normal_load <= high
+
+
+def profile(points: str) -> Config:
+    return FLAT.replace({"road.type": "profile", "road.points": points})
+
+
+def test_a_profile_that_is_not_reached():
+    assert whats(standing(profile("500 0, 501 0.1, 600 0"))) == [
+        "The profile was not reached: it begins at x = 500 m, the wheels came to 1.75 m",
+        "The run ends before a wheel comes to the profile",
+    ]
+    level = whats(standing(profile("0 0, 501 0, 600 0.1")))
+    assert level == ["The run ends before a wheel comes to the profile"]
+
+
+def test_a_profile_that_ends_under_way():
+    run = simulate(load_config(FIELD / "profile_runs_out.yaml"))
+    assert whats(run)[0] == "The points of the profile end at x = 43 m; all wheels were past that at t = 10.78 s"
+    short = simulate(run.config.replace({"simulation.duration": 10}))
+    assert whats(short) == []
+
+
+def test_who_slides_away_is_judged_by_the_road_that_he_slid_on():
+    """On ice, much further than the speed to be kept would lead."""
+    run = simulate(load_config(FIELD / "icy_descent.yaml"))
+    assert run.q[-1, 0, 0] > build_road(run.config).reach
+    assert not any("sank" in what for what in whats(run))
+    assert penetration(run).max() == pytest.approx(0.015, abs=0.002)
+    assert energy_balance(run).closing_error < 0.01

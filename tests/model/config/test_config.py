@@ -101,7 +101,7 @@ def test_reference_cases_load(path):
 
 
 def test_there_are_reference_cases():
-    assert len(REFERENCES) == 17
+    assert len(REFERENCES) == 27
 
 
 # Reading

@@ -7,13 +7,13 @@ import pytest
 from scipy.integrate import simpson
 
 from model.config.config import Config
-from model.dynamics import equations
-from model.dynamics.lanes import pack, unpack
+from model.dynamics import equations, kernel
+from model.dynamics.lanes import WORK, in_lanes, make_work, pack, unpack
 from model.dynamics.vehicle import System, build_system
 from model.road.road import Road, build_road
 from model.simulation.integrate import Integration, Samples, Status
 from model.simulation.simulate import starting_state
-from tests.model.support import FLAT, IMAGINARY, PAPER, ROAD_SPRING, WHEELS, admissible_state, entries
+from tests.model.support import FLAT, IMAGINARY, OPTIONS, PAPER, ROAD_SPRING, WHEELS, admissible_state, entries
 
 UNDAMPED = {f"{ROAD_SPRING}.damping": 0.0, f"{IMAGINARY}.damping": 0.0, "contact.normal_damping": 0.0}
 UNDRIVEN = {"drive.force_limit": 0.0}
@@ -199,9 +199,25 @@ def test_kinetic_energy_changes_by_the_power_of_the_forces():
             np.array([rates.F]),
             rates.lam[None],
             np.zeros(1),
+            np.zeros(1),
         )
         _, z_dot, p_dot = contacts(system, road, one)
         weight = -(system.weight * state.v[:, 1]).sum()
         ground = (-rates.f_n * z_dot + rates.f_t * p_dot).sum()
         power = bars + weight + ground + drive_power(system, one)[0]
         assert gained == pytest.approx(power, rel=1e-8)
+
+
+@pytest.mark.parametrize("changes", [{}, *OPTIONS.values(), {"drive.mode": "prescribed"}])
+def test_the_work_in_the_state_is_that_of_all_forces_but_weight(changes):
+    """At one state: what the kernel says the work grows by is what the kinetic energy does, less the weight's power."""
+    system, road = prepared(PAPER.replace(changes))
+    for seed in range(3):
+        state = admissible_state(system, np.random.default_rng(seed))
+        y = pack(system, *state)
+        dy, work = np.empty_like(y), make_work(system)
+        kernel.rates(in_lanes(system), road.table, 0.0, y, dy, work)
+        v_dot = equations.rates(system, road, 0.0, state).v_dot
+        inertia = np.column_stack([system.mass, system.mass, system.inertia])
+        gained = (inertia * state.v * v_dot).sum() + (system.weight * state.v[:, 1]).sum()
+        assert dy[WORK] == pytest.approx(gained, rel=1e-8)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from model.dynamics import equations
-from model.dynamics.lanes import INT_E, LANES, coordinates, pack, places, state_size
+from model.dynamics.lanes import INT_E, LANES, WORK, coordinates, pack, places, state_size
 from model.dynamics.vehicle import build_system
 from model.road.road import build_road
 from model.simulation.integrate import Integration
@@ -62,7 +62,7 @@ def test_empty_lanes_stay_empty_and_change_nothing(wheels):
     run = Integration(system, road.table, y, 2.0, 100.0)
     run.advance(2.0)
     empty = np.ones(len(run.y), dtype=bool)
-    empty[coordinates(system)] = False
+    empty[[*coordinates(system), WORK]] = False
     assert empty.any()
     assert (run.y[empty] == 0.0).all()
 

@@ -23,7 +23,7 @@ def worst_wheel(x: np.ndarray) -> float:
 
 
 def test_all_cases_are_there():
-    assert len(REFERENCE_CASES) == 17
+    assert len(REFERENCE_CASES) == 27
 
 
 @pytest.mark.parametrize("case", REFERENCE_CASES)
@@ -32,7 +32,7 @@ def test_agrees_with_the_independent_engine(case):
     assert run.status == "complete"
     with np.load(REFERENCE / f"{case}.npz") as file:
         right = dict(file)
-    n = run.system.n
+    n, hard = run.system.n, "peak_load" in right  # random draws and hard suspensions
     np.testing.assert_allclose(run.t, np.arange(len(right["chassis"])) / right["rate"], atol=1e-12)
     peak = right["normal_load"].max()
     load = run.normal_load - right["normal_load"]
@@ -44,9 +44,9 @@ def test_agrees_with_the_independent_engine(case):
         "normal load, rms": (worst_wheel(load), 1e-3 * peak),
         "normal load": (np.abs(load).max(), 2e-2 * peak),
         "vertical acceleration": (rms(run.a[:, 0, 1] - a_y), 5e-3 * max(rms(a_y), LEAST_ACCELERATION)),
-        "heave": (np.abs(run.q[:, 0, 1] - right["chassis"][:, 1]).max(), 20e-6),
-        "pitch": (np.abs(run.q[:, 0, 2] - right["chassis"][:, 2]).max(), 5e-5),
-        "arm angles": (np.abs(arm_angle - right["road_arm_angle"]).max(), 2e-4),
+        "heave": (np.abs(run.q[:, 0, 1] - right["chassis"][:, 1]).max(), 1e-4 if hard else 20e-6),
+        "pitch": (np.abs(run.q[:, 0, 2] - right["chassis"][:, 2]).max(), 1e-4 if hard else 5e-5),
+        "arm angles": (np.abs(arm_angle - right["road_arm_angle"]).max(), 1e-3 if hard else 2e-4),
         "speed": (np.abs(run.v[:, 0, 0] - right["chassis"][:, 3]).max(), 1e-3),
         "traction": (worst_wheel(run.traction[::2] - right["traction_100hz"]), 2e-3 * peak),
         "drive force": (rms(run.drive_force - right["drive_force"]), 2e-3 * peak),

@@ -63,7 +63,10 @@ def test_load_gives_back_what_was_saved(run, tmp_path):
     again = Trajectory.load(tmp_path / "run.npz")
     for field in dataclasses.fields(Trajectory):
         saved, loaded = getattr(run, field.name), getattr(again, field.name)
-        if isinstance(saved, np.ndarray):
+        if field.name == "tracked":
+            for name, value in vars(saved).items():
+                np.testing.assert_array_equal(getattr(loaded, name), value)
+        elif isinstance(saved, np.ndarray):
             np.testing.assert_array_equal(loaded, saved)
             assert loaded.dtype == saved.dtype
         else:

@@ -1,6 +1,7 @@
 """Where the wheels meet the road, and the forces there: eq. (4)–(7), compiled, for all chains side by side (lanes.py).
 
-Looking up the road is done wheel by wheel, and so is the search where wheels may bridge a valley; all else in lanes.
+The law itself stands in ground.py. Looking up the road is done wheel by wheel, and so is the search where wheels may
+bridge a valley; all else in lanes.
 """
 
 from __future__ import annotations
@@ -26,8 +27,10 @@ def _press(lanes, i, n_x, n_y, d, y, dy, w, wheel):
     X, XI, AT, _THERE = wheel
     v_x, v_y, omega = y[i + X + 3 * LANES], y[i + X + 4 * LANES], y[i + X + 5 * LANES]
     z_dot, p_dot = -(v_x * n_x + v_y * n_y), v_x * n_y - v_y * n_x + lanes.r * omega
-    f_n, f_t, xi_dot = _force(lanes.ground, lanes.r - d, z_dot, p_dot, y[i + XI])
+    z = lanes.r - d
+    f_n, f_t, xi_dot = _force(lanes.ground, z, z_dot, p_dot, y[i + XI])
     w[i + AT + C.f_n], w[i + AT + C.f_t] = f_n, f_t
+    w[i + AT + C.z], w[i + AT + C.power] = z, f_t * p_dot - f_n * z_dot
     w[i + AT + C.F_x], w[i + AT + C.F_y] = f_n * n_x + f_t * n_y, f_n * n_y - f_t * n_x
     dy[i + XI] = xi_dot
     return f_n
