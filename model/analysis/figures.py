@@ -145,9 +145,18 @@ AIR_TIME = Figure(
 DRIFT = Figure(
     "drift", "Constraint drift, largest", "µm", "by which joints were apart", lambda of: 1e6 * of.drift, compared=False
 )
+ENERGY_ERROR = Figure(
+    "energy_error",
+    "Energy unaccounted for",
+    "%",
+    "of the energy turned over, at worst in the whole run",
+    lambda of: None if of.energy_error is None else 100 * of.energy_error,
+    compared=False,
+)
 FIGURES = (
     ACCELERATION_RMS, ACCELERATION_PEAK, SHOCK, WEIGHTED, DOSE, TRANSIENT, POWER, PITCH, IMAGINARY_SHARE,
     LOAD_PEAK, LOAD_RMS, LOAD_COEFFICIENT, TRAVEL, AIR_TIME, DRIFT,
+    ENERGY_ERROR,
 )  # fmt: skip
 RIDE_FIGURES = tuple(figure for figure in FIGURES if figure.compared)
 HULL_FIGURES = tuple(figure for figure in RIDE_FIGURES if not figure.per_wheel)

@@ -47,6 +47,7 @@ class Summary:
     seat: Comfort | None  # of the driver; None where there are too few samples a second
     imaginary_share: float  # mean over time of Σ load of imaginary wheels / Σ load of all
     drift: float  # m, by which joints were apart at worst
+    energy_error: float | None  # energy not accounted for, as a share of what was turned over; None: not known
     real_time_factor: float  # simulated time / computing time
 
 
@@ -113,6 +114,7 @@ def summary(trajectory: Trajectory) -> Summary:
         seat=ride_comfort(trajectory, seat(trajectory.config), taken),
         imaginary_share=imaginary_share(load, system.n),
         drift=float(trajectory.constraint_residual.max()),
+        energy_error=trajectory.energy_error,
         real_time_factor=float(trajectory.t[-1]) / trajectory.statistics.seconds,
     )
 

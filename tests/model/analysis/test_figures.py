@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from model import load_config, simulate
-from model.analysis.figures import AIR_TIME, FIGURES, Row, comparison, figures_by_name
+from model.analysis.figures import AIR_TIME, DRIFT, ENERGY_ERROR, FIGURES, Row, comparison, figures_by_name
 from model.analysis.ride import imaginary_share, summary
 from model.simulation.trajectory import Trajectory
 from tests.model.analysis.test_ride import FLAT, RATE, standing
@@ -32,10 +32,18 @@ def test_figures_by_name_are_those_of_each_wheel_and_of_the_worst():
     assert "travel.I1" not in found
 
 
+def test_the_checks_of_the_computation_are_figures_too():
+    run = simulate(load_config("half_round"))
+    found = figures_by_name(summary(run))
+    assert found["energy_error"] == pytest.approx(100 * run.energy_error)
+    assert found["drift"] == pytest.approx(1e6 * run.constraint_residual.max())
+    assert not {row.figure for row in comparison(run, None)} & {DRIFT.label, ENERGY_ERROR.label}
+
+
 def test_what_cannot_be_told_is_none_and_stays_in_the_comparison():
     slow = standing(FLAT.replace({"simulation.output_rate": 50}))
     found = figures_by_name(summary(slow))
-    cannot = {name for name, value in found.items() if value is None}
+    cannot = {name for name, value in found.items() if value is None} - {"energy_error"}  # not known of any of these
     assert cannot == {"shock", "weighted_acceleration", "vibration_dose", "transient", "absorbed_power"}
     row = rows(slow, standing())["Absorbed power at the seat"]
     assert (row.now, row.baseline, row.change) == (None, 0, None)
