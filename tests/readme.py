@@ -1,9 +1,11 @@
-"""`make readme`: puts what is generated into the README: what was settled beyond the paper, parameters, benchmarks."""
+"""`make readme`: puts what is generated into the README: what was settled beyond the paper, figures,
+parameters, benchmarks."""
 
 from __future__ import annotations
 
 import json
 
+from model.analysis.figures import figure_table
 from model.config.parameters import parameter_table
 from model.paper.errata import errata_list
 from tests.structure import ROOT
@@ -36,6 +38,7 @@ def benchmark_table() -> str:
 def main() -> None:
     readme = ROOT / "README.md"
     text = filled(readme.read_text(), "errata", errata_list())
+    text = filled(text, "figures", figure_table())
     text = filled(text, "parameters", parameter_table())
     readme.write_text(filled(text, "benchmarks", benchmark_table()))
 

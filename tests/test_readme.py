@@ -6,6 +6,7 @@ import re
 
 import pytest
 
+from model.analysis.figures import figure_table
 from model.config.parameters import parameter_table
 from model.paper.errata import errata_list
 from tests.structure import ROOT
@@ -16,7 +17,9 @@ FOLDERS = ("app", "assets", "configs", "model", "tests")
 TEXTS = [README, *(path for name in FOLDERS for suffix in ("*.py", "*.md") for path in (ROOT / name).rglob(suffix))]
 
 
-@pytest.mark.parametrize(("mark", "content"), [("errata", errata_list()), ("parameters", parameter_table())])
+@pytest.mark.parametrize(
+    ("mark", "content"), [("errata", errata_list()), ("figures", figure_table()), ("parameters", parameter_table())]
+)
 def test_what_is_generated_is_the_code_s(mark: str, content: str):
     text = README.read_text()
     found = text.split(f"<!-- {mark}: make readme -->")[1].split(f"<!-- end of {mark} -->")[0]

@@ -35,7 +35,7 @@ class SpectrumPanel:
                 "Spectrum",
                 (AMPLITUDE, DENSITY),
                 hint="Amplitude: a wave of height a shows a peak as high as a. Power density (Welch): how much is in "
-                "each hertz; the area under it is the square of the rms. Both of the steady part of the run.",
+                "each hertz; the area under it is the square of the rms. Both of the stretch that figures come from.",
             )
             self._place: Any = gui.add_dropdown(
                 "Felt at", (HULL, SEAT), hint="Where the driver sits is set under Vehicle: Seat, forward and up"

@@ -36,7 +36,7 @@ def spectrum_plot(
     density: bool = False,
     at_seat: bool = False,
 ) -> Plot:
-    """Spectrum of the vertical acceleration in the steady part of the run, at the centre of mass or the driver's seat.
+    """Spectrum of the vertical acceleration over the window of the run, at the centre of mass or the driver's seat.
 
     Amplitude, m/s², or power density, m²/s³.
     """

@@ -215,6 +215,15 @@ def comparison(now: Trajectory, baseline: Trajectory | None) -> list[Row]:
     return rows
 
 
+def figure_table() -> str:
+    """The README's table of figures, in Markdown."""
+    rows = ["| Name | Figure | Unit | What it is | Better |", "| --- | --- | --- | --- | --- |"]
+    for figure in FIGURES:
+        name = f"`{figure.name}`" + (", each wheel" if figure.per_wheel else "")
+        rows.append(f"| {name} | {figure.label} | {figure.unit} | {figure.meaning} | {figure.better or '–'} |")
+    return "\n".join(rows)
+
+
 def percent(value: float | None, reference: float | None, least: float) -> float | None:
     """By how much a value differs from its reference, %; None without both, or where that is smaller than `least`."""
     return None if value is None or reference is None or reference < least else 100 * (value / reference - 1)
