@@ -339,5 +339,5 @@ def _profile_missed(trajectory: Trajectory) -> Iterator[RideWarning]:
         left = trajectory.t[(wheels.min(axis=1) > end).argmax()]
         yield RideWarning(
             f"The points of the profile end at x = {end:.4g} m; all wheels were past that at t = {left:.2f} s",
-            "From there on the road is level. Figures that count this stretch too are too small: end the run there.",
+            "From there on the road is level. Means, comfort and absorbed power leave this stretch out.",
         )
