@@ -28,7 +28,7 @@ _KERNELS = (
     "dynamics/vehicle.py",
     "dynamics/suspension.py",
     "dynamics/lanes.py",
-    "dynamics/contact.py",
+    "dynamics/kernel_contact.py",
     "dynamics/kernel.py",
     "simulation/dense.py",
     "simulation/extremes.py",

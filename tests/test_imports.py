@@ -15,7 +15,7 @@ PLACES = {
     "numba": {"model.compiled"},
     "model.compiled": {
         *("model.road.nearest_point", "model.road.table", "model.road.thinning"),
-        *("model.dynamics.contact", "model.dynamics.kernel"),
+        *("model.dynamics.kernel_contact", "model.dynamics.kernel"),
         *("model.simulation.dense", "model.simulation.extremes", "model.simulation.steppers"),
         *("app.plots.thinning", "app.view3d.track_belt"),
     },

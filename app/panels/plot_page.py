@@ -9,7 +9,7 @@ import json
 
 from app.format.assets import asset
 from app.format.markup import element, joined, running, style
-from app.panels.charts import OTHER_KEY, TIME_KEY
+from app.panels.plot_charts import OTHER_KEY, TIME_KEY
 from app.plots.spectrum import Mark
 
 

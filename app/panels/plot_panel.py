@@ -18,8 +18,8 @@ import viser
 from app.format.colours import Palette, wheel_palette
 from app.format.markup import element
 from app.panels.actions import Actions
-from app.panels.charts import Charts
 from app.panels.page_layout import chart_height, spectrum_height
+from app.panels.plot_charts import Charts
 from app.panels.plot_page import now_html, plot_page, tab_html
 from app.panels.spectrum_panel import BELOW_CHART, SpectrumPanel
 from app.plots.curves import Plot, load_plots

@@ -9,7 +9,7 @@ import viser
 
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
-from app.panels.charts import Charts
+from app.panels.plot_charts import Charts
 from app.panels.plot_page import marks_html
 from app.plots.spectrum import named, spectrum_plot
 from app.tabs.modes import mode_titles, modes_page

@@ -12,6 +12,7 @@ import numpy as np
 from app.format.colours import Palette
 from app.format.load_unit import LoadUnit, load_unit
 from app.plots.thinning import thin
+from model.analysis.ride import imaginary_shares
 from model.simulation.trajectory import Trajectory
 
 DECIMALS = 2  # of the values that are plotted; the page shows no more (plots.js)
@@ -153,6 +154,4 @@ def _other_loads(unit: LoadUnit, run: Trajectory) -> np.ndarray:
 
 def _share(run: Trajectory) -> np.ndarray:
     """(N, 1), % of all wheels' load; 0 with all in the air."""
-    total = run.normal_load.sum(axis=1)
-    imaginary = run.normal_load[:, run.system.n :].sum(axis=1)
-    return 100 * (imaginary / np.where(total > 0, total, 1.0))[:, None]
+    return 100 * imaginary_shares(run.normal_load, run.system.n)[:, None]

@@ -19,6 +19,7 @@ import numpy as np
 from app.view3d.meshes.measures import Measures, measures_of
 from app.view3d.meshes.surroundings import AHEAD, BEHIND, TILES, shadow
 from app.view3d.track_belt import ARC, points_along, track_path
+from model.analysis.ride import wheel_heights
 from model.dynamics.vehicle import System
 from model.road.road import Road
 from model.simulation.drive import REBASE
@@ -142,10 +143,7 @@ class Scene:
     @cached_property
     def travel(self) -> Travel:
         """How far the road wheels have moved in the hull."""
-        run, chassis = self.trajectory, self.system.chassis
-        wheels = run.q[:, self.system.road_wheels, :2] - run.q[:, chassis, None, :2]
-        pitch = run.q[:, chassis, 2, None]
-        height = np.cos(pitch) * wheels[..., 1] - np.sin(pitch) * wheels[..., 0] - self.places.on_hull[0].imag
+        height = wheel_heights(self.system, self.trajectory.q) - self.places.on_hull[0].imag
         now = Travel(height.min(axis=0), height.max(axis=0), height[0])
         if self.before is None:
             return now

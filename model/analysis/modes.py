@@ -1,4 +1,4 @@
-"""How the vehicle likes to swing: natural frequencies, damping and mode shapes, linearised at rest on flat ground.
+"""The vehicle's own motions: natural frequencies, damping and mode shapes, linearised at rest on flat ground.
 
 Finite differences of the kernel, about the rest pose, with wheels that stick to the ground and the drive holding the
 vehicle where it is. The state is reduced to what the joints leave free: the hull's x and y and all rotations, their

@@ -142,10 +142,15 @@ def suspension_travel(trajectory: Trajectory) -> np.ndarray:
         with suppress(NoEquilibriumError):
             static = rest_pose(system)[0]
         q = np.concatenate([static[None], q])
+    height = wheel_heights(system, q)
+    return height[-len(trajectory.t) :] - height[0]
+
+
+def wheel_heights(system: System, q: np.ndarray) -> np.ndarray:
+    """(N, n) m: of each road wheel's centre over the hull's centre of mass, in its frame, in poses q (N, B, 3)."""
     hull_x, hull_y, pitch = q[:, system.chassis, :, None].swapaxes(0, 1)
     x, y = q[:, system.road_wheels, 0] - hull_x, q[:, system.road_wheels, 1] - hull_y
-    height = np.cos(pitch) * y - np.sin(pitch) * x
-    return height[-len(trajectory.t) :] - height[0]
+    return np.cos(pitch) * y - np.sin(pitch) * x
 
 
 def imaginary_share(load: np.ndarray, road_wheels: int) -> float:
@@ -153,9 +158,14 @@ def imaginary_share(load: np.ndarray, road_wheels: int) -> float:
 
     load: (N, W) N, of so many road wheels and then of imaginary ones.
     """
+    share, grounded = imaginary_shares(load, road_wheels), load.sum(axis=1) > 0
+    return float(np.mean(share[grounded])) if grounded.any() else 0.0
+
+
+def imaginary_shares(load: np.ndarray, road_wheels: int) -> np.ndarray:
+    """(N,) the same at each sample; 0 with all wheels in the air."""
     total, imaginary = load.sum(axis=1), load[:, road_wheels:].sum(axis=1)
-    grounded = total > 0
-    return float(np.mean(imaginary[grounded] / total[grounded])) if grounded.any() else 0.0
+    return imaginary / np.where(total > 0, total, 1.0)
 
 
 def dynamic_load_coefficient(load: np.ndarray, static_load: np.ndarray) -> np.ndarray:

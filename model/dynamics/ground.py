@@ -1,4 +1,4 @@
-"""The ground's law, eq. (4)–(7), in one place: force, energy, stiffness, and what it turns into heat.
+"""The contact law of wheel and ground, eq. (4)–(7), in one place: force, energy, stiffness, what becomes heat.
 
 z: how deep a wheel is in the ground, m, not at all where z ≤ 0; ṗ: how fast its rim slips along the ground, m/s; ξ (the
 paper's x): how far the ground is sheared under it, m. All functions but `force` also take arrays of one shape. Another
@@ -40,7 +40,7 @@ class Losses(NamedTuple):
 
 
 def force(ground: Ground, z: float, z_dot: float, p_dot: float, xi: float) -> tuple[float, float, float]:
-    """Normal load f_n and traction f_t on a wheel, N, and ξ̇, m/s. The kernel compiles this function (contact.py)."""
+    """Normal load f_n and traction f_t on a wheel, N, and ξ̇, m/s. kernel_contact.py compiles this function."""
     z = max(z, 0.0)
     # Eq. (4), cut at zero: the ground never pulls
     f_n = max(z * z * (ground.k_n + ground.c_n * z_dot), 0.0)

@@ -25,7 +25,7 @@ import numpy as np
 
 from model.compiled import compiled, inlined
 from model.dynamics import suspension
-from model.dynamics.contact import block, contact_forces
+from model.dynamics.kernel_contact import block, contact_forces
 from model.dynamics.lanes import INT_E, LANES, SCRATCH_SIZE, SPEED, WORK, C, P, W, Y
 
 

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from model.analysis.ride import imaginary_share
-from model.analysis.spectrum import amplitude_spectrum
-from model.config.config import Config, SineRoad, load_config
+from model.analysis.spectrum import amplitude_spectrum, excitation
+from model.config.config import Config, load_config
 from model.simulation.simulate import simulate
 from model.simulation.trajectory import Trajectory
 
@@ -162,8 +162,8 @@ def study_paper(on_progress: Callable[[float], None] | None = None) -> PaperStud
 
 def run_figures(config: Config) -> Figures:
     """Run a configuration on waves for as long as its figures need. Raises StudyError."""
-    assert isinstance(config.road, SineRoad)
-    frequency = config.drive.speed_kmh / 3.6 / config.road.wavelength
+    frequency = excitation(config)
+    assert frequency is not None  # there are waves
     run = simulate(config.replace({"simulation.duration": SETTLING + (RUN_IN + WAVES) / frequency}))
     if not run.complete:
         raise StudyError(f"A run of the study ended early: {run.status}. {run.advice}")

@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from model.compiled import compiled, inlined
-from model.dynamics.contact import contact_forces
 from model.dynamics.kernel import rates
+from model.dynamics.kernel_contact import contact_forces
 from model.dynamics.lanes import HEAD, LANES, SCRATCH_SIZE, STATE_SIZE, C, W, Y, blocks, state_size
 from model.dynamics.vehicle import System
 from model.simulation.dense import CUBIC, SPARE, Memory, state_within

@@ -62,7 +62,7 @@ class Samples(NamedTuple):
 
 
 def make_samples(system: System, count: int) -> Samples:
-    """Room for that many samples, in one piece: a large one is had from the system in large pages, which is quicker."""
+    """Room for that many samples, in one piece: the system gives a large one in large pages, which is quicker."""
     B, W = len(system.mass), len(system.wheel)
     rows = 2 * len(system.joint_i) + int(system.prescribed)
     shapes = [(count, *shape) for shape in [(B, 3), (B, 3), (B, 3), (W,), (W,), (W,), (), (rows,), (), ()]]

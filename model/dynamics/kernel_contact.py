@@ -1,6 +1,7 @@
 """Where the wheels meet the road, and the forces there: eq. (4)–(7), compiled, for all chains side by side (lanes.py).
 
-Looking up the road is done wheel by wheel, and so is the search where wheels may bridge a valley; all else in lanes.
+The law itself stands in ground.py. Looking up the road is done wheel by wheel, and so is the search where wheels may
+bridge a valley; all else in lanes.
 """
 
 from __future__ import annotations
