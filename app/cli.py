@@ -146,11 +146,15 @@ def paper(
 ) -> None:
     """Repeat what the paper ran: its figures, its statements one by one, and what our assumptions do to them.
 
+    Then lay the M113 on imaginary wheels beside runs of a track of links, and seek the wheels that come nearest.
+
     Exit status: 0 done; 2 bad folder, 3 a run diverged, 130 interrupted: nothing written.
     """
     _check_folder(out)
+    from app.reports.paper.links import record_texts
     from app.reports.paper.page import paper_files
     from model.files import write_whole
+    from model.paper.links import study_links
     from model.paper.study import StudyError, study_paper
 
     with _progress("The paper's runs") as on_progress, _interrupt() as should_stop:
@@ -162,12 +166,13 @@ def paper(
                 _fail("Interrupted: nothing was written.", CANCELLED)
 
         try:
-            study = study_paper(go_on)
+            study = study_paper(lambda part: go_on(part / 2))
+            links = study_links(record_texts(), lambda part: go_on((1 + part) / 2))
         except StudyError as error:
             _fail(str(error), DIVERGED)
     with _writing(out):
         out.mkdir(parents=True, exist_ok=True)
-        for name, content in paper_files(study).items():
+        for name, content in paper_files(study, links).items():
             write_whole(out / name, content)
     output.print(f"The page is {out / 'index.html'}; its figures are beside it.", markup=False, soft_wrap=True)
 

@@ -18,7 +18,7 @@ ENERGY_LIMIT = 0.1  # % of the energy turned over that may be unaccounted for â€
 CLOSING_LIMIT = 0.5  # â€¦ % where only the powers at the samples are known
 FORCE_LIMIT = 1e-6  # of the weight that Newton's law may be broken by
 LEAST_SAMPLES = 2  # of a run that has an energy balance
-LEFT_OPEN = "How deep the wheels sink into the ground is checked when the drive pauses."
+LEFT_OPEN = "How deep wheels sink, and whether the hull's floor meets the ground, is checked when the drive pauses."
 
 
 class Check(NamedTuple):
@@ -33,7 +33,7 @@ class Check(NamedTuple):
 def trust_html(run: Trajectory, driving: bool = False, road: Road | None = None) -> str:
     """HTML of figures and warnings. driving: the run is a stretch of an endless drive, without balances of its own.
 
-    road: under that stretch; without it nothing is said of how deep its wheels sank.
+    road: under that stretch; without it nothing is said of what its wheels and the hull's floor do to it.
     """
     if len(run.t) < LEAST_SAMPLES:
         return page(element("p", f"There is nothing to judge: {run.status}."))

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
 
 from model.analysis.comfort import LEAST_RATE, MOST_CREST, Comfort, ride_comfort
 from model.analysis.signals import Window, seat, window
@@ -19,6 +20,7 @@ from model.simulation.trajectory import Trajectory, wheel_names
 
 ARM_LIMIT = np.radians(45)  # turn of a road arm beyond which the model is doubtful
 SINKING_LIMIT = 0.1  # penetration, as a share of the wheel's radius
+FLOOR_STEP = 0.01  # m between points at which the hull's floor is held against the road
 IN_PHASE = 0.02  # how close to a whole number of waves the wheel gaps must come
 
 
@@ -243,6 +245,7 @@ def warnings(trajectory: Trajectory, road: Road | None = None) -> list[RideWarni
         *motion_warnings(trajectory),
         *of_profile,
         *_wheels_sunk_deep(trajectory, road),
+        *_belly_grounded(trajectory, road or trajectory.road),
         *figure_warnings(trajectory.config, taken, felt),
     ]
 
@@ -297,6 +300,38 @@ def _wheels_sunk_deep(trajectory: Trajectory, road: Road | None) -> Iterator[Rid
             f"Wheel {name} sank {1000 * depth[wheel]:.3g} mm into the ground (t = {time[wheel]:.2f} s)",
             "The contact law is meant for less than a tenth of the radius: take this load with care, "
             "or stiffen the ground.",
+        )
+
+
+def _belly_grounded(trajectory: Trajectory, road: Road) -> Iterator[RideWarning]:
+    """Of the hull's floor from the first wheel to the last, at samples: where it is deepest in the road."""
+    system = trajectory.system
+    front, rear = system.q_design[system.road_wheels, 0][[0, -1]] - system.q_design[system.chassis, 0]
+    down = system.q_design[system.chassis, 1] - system.belly
+    x, y, turn = trajectory.q[:, system.chassis].T
+    behind = x + np.cos(turn) * rear + np.sin(turn) * down  # (N,) m, of the floor under the last wheel
+    before = x + np.cos(turn) * front + np.sin(turn) * down
+    lowest = y - np.cos(turn) * down + np.minimum(np.sin(turn) * rear, np.sin(turn) * front)
+    points = np.arange(min(behind.min(), before.min()), max(behind.max(), before.max()) + FLOOR_STEP, FLOOR_STEP)
+    height = road.height(points)
+    # Only where the road under the floor is anywhere as high as its lowest end can they meet
+    highest = maximum_filter1d(height, 2 * int(np.ceil((front - rear) / 2 / FLOOR_STEP)) + 3)
+    near = np.flatnonzero(np.interp((behind + before) / 2, points, highest) > lowest)
+    if len(near) == 0:
+        return
+    part = np.linspace(0, 1, int(np.ceil((front - rear) / FLOOR_STEP)) + 1)
+    at = behind[near, None] + (before - behind)[near, None] * part
+    floor = (y + np.sin(turn) * rear - np.cos(turn) * down)[near, None] + (np.sin(turn) * (front - rear))[
+        near, None
+    ] * part
+    deep = np.interp(at, points, height) - floor
+    worst, place = np.unravel_index(deep.argmax(), deep.shape)
+    if deep[worst, place] > 0:
+        yield RideWarning(
+            f"The hull's floor would be {1000 * deep[worst, place]:.3g} mm in the ground at "
+            f"x = {at[worst, place]:.2f} m (t = {trajectory.t[near[worst]]:.2f} s)",
+            "Nothing touches the ground here but wheels. A real hull would have been lifted, jolted or stopped there: "
+            "the ride is rougher than this run says.",
         )
 
 

@@ -54,6 +54,7 @@ class Chassis(Section):
     mass: float = _field("vehicle.chassis.mass")
     pitch_inertia: float = _field("vehicle.chassis.pitch_inertia")
     cg_height: float = _field("vehicle.chassis.cg_height")
+    belly_height: float | None = _field("vehicle.chassis.belly_height")
 
 
 class Seat(Section):

@@ -148,6 +148,11 @@ PARAMETERS: tuple[Parameter, ...] = (
         group=VEHICLE, source=ASSUMED,
         description="Height of the hull's centre of mass above flat ground in the design pose.",
         growth="Driving and braking forces tip the hull more, so it pitches further."),
+    Parameter("vehicle.chassis.belly_height", "Belly", "", "m", None, 0.01, 5, 0.1, 1, 0.01,
+        group=VEHICLE, source=OURS, shown=MILLIMETRES, optional=True,
+        description="Height of the hull's floor above flat ground in the design pose; the motion does not depend on "
+        "it, but a run warns where the floor would meet the ground. Left out: just under the road arms' pivots.",
+        growth="Higher obstacles pass under the hull."),
     Parameter("vehicle.seat.x", "Seat, forward", "", "m", 1.5, -20, 20, -3, 3, 0.05,
         group=VEHICLE, source=ASSUMED,
         description="How far ahead of the hull's centre of mass the driver sits; the ride at the seat is judged there.",

@@ -15,6 +15,9 @@ from model.config.config import Config
 from model.dynamics.ground import Ground
 
 GRAVITY = 9.81  # m/s², along −y
+# Of the wheels' radius, for a hull's floor that is not given: how far it is under the arms' pivots, its least and its
+# greatest height above the ground
+UNDER_PIVOT, LOWEST_BELLY, HIGHEST_BELLY = 0.15625, 0.9375, 1.875
 
 
 class Stops(NamedTuple):
@@ -53,6 +56,7 @@ class System(NamedTuple):
     tau_0: np.ndarray  # (S,) preload torque, N m
     wheel: np.ndarray  # (W,) body of each wheel
     r: float  # wheel radius, m
+    belly: float  # height of the hull's floor in the design pose, m; no force acts on it
     ground: Ground
     prescribed: bool  # drive by the rheonomic constraint instead of torques
     x_0: float  # m, where the prescribed drive is at t = 0
@@ -173,6 +177,7 @@ def build_system(config: Config) -> System:
         tau_0=np.concatenate([tau_0, tau_l]),
         wheel=np.concatenate([wheels, imaginary]),
         r=r,
+        belly=_belly(vehicle.chassis.belly_height, float(pivot[0, 1]), r),
         ground=Ground(
             k_n=contact.normal_stiffness,
             c_n=contact.normal_damping,
@@ -230,6 +235,13 @@ def _stops(L: float, phi: float, bump_travel: float | None, rebound_travel: floa
     bump = np.inf if bump_travel is None else phi - np.arcsin(np.sin(phi) - bump_travel / L)
     rebound = -np.inf if rebound_travel is None else phi - np.arcsin(np.sin(phi) + rebound_travel / L)
     return float(bump), float(rebound)
+
+
+def _belly(given: float | None, pivot: float, r: float) -> float:
+    """Height of the hull's floor, m; pivot: height of the road arms' pivots, m."""
+    if given is not None:
+        return given
+    return min(max(pivot - UNDER_PIVOT * r, LOWEST_BELLY * r), HIGHEST_BELLY * r)
 
 
 def _per_wheel(value: float | tuple[float, ...], n: int) -> np.ndarray:

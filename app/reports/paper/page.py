@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from app.format.markup import Html, element, words_html
 from app.reports.drawings import Drawing
@@ -10,7 +10,10 @@ from app.reports.html_page import document, picture
 from app.reports.paper.assumptions import assumptions
 from app.reports.paper.figures import PAPER_FIGURES
 from app.reports.paper.findings import Finding, findings
+from app.reports.paper.links import TITLE as LINKS_TITLE
+from app.reports.paper.links import links_section, motions
 from model.paper.errata import ERRATA
+from model.paper.links import LinksStudy
 from model.paper.study import WAVES, PaperStudy
 
 TITLE = "What the paper says, and what its model does"
@@ -26,17 +29,18 @@ CLASSES = {
 }
 
 
-def paper_files(study: PaperStudy) -> dict[str, bytes]:
+def paper_files(study: PaperStudy, links: LinksStudy) -> dict[str, bytes]:
     """Name -> content of every file: index.html, and each figure as PNG and SVG."""
     drawings = {name: (make(study), words) for name, (make, words) in PAPER_FIGURES.items()}
-    files = {"index.html": _page(study, drawings).encode()}
-    for name, (drawing, _) in drawings.items():
+    beside_links = motions(links)
+    files = {"index.html": _page(study, drawings, links_section(links, beside_links)).encode()}
+    for name, drawing in {**{name: drawing for name, (drawing, _) in drawings.items()}, "links": beside_links}.items():
         for suffix in (".png", ".svg"):
             files[name + suffix] = drawing.bytes(suffix, background="white")
     return files
 
 
-def _page(study: PaperStudy, drawings: dict[str, tuple[Drawing, str]]) -> str:
+def _page(study: PaperStudy, drawings: dict[str, tuple[Drawing, str]], links: Iterable[Html]) -> str:
     found = findings(study)
     shown = {name: picture(drawing, words) for name, (drawing, words) in drawings.items()}
     return document(
@@ -60,6 +64,8 @@ def _page(study: PaperStudy, drawings: dict[str, tuple[Drawing, str]]) -> str:
             shown["harmonics"],
             element("h2", "What our assumptions do to it"),
             *assumptions(study),
+            element("h2", LINKS_TITLE),
+            *links,
             element("h2", "How the paper is read"),
             element("ol", *map(_erratum, range(len(ERRATA)))),
             element("p", f"Figures of merit are taken over the last {WAVES} waves of each run.", class_="note"),

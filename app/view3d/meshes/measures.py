@@ -30,6 +30,7 @@ class Measures:
     radius: float  # of road wheels and imaginary wheels, to the ground: the track's shoes included
     links: tuple[float, ...]  # lengths of the imaginary arms
     pivot: tuple[float, float]  # of a road arm, from its wheel's centre: forward, up
+    floor: float  # height of the hull's floor, as the model has it
     hull: str  # its shape, one of model.config.parameters.HULLS
 
     @property
@@ -45,6 +46,7 @@ class Measures:
             self.radius / s,
             tuple(length / s for length in self.links),
             (self.pivot[0] / s, self.pivot[1] / s),
+            self.floor / s,
             self.hull,
         )
 
@@ -83,8 +85,8 @@ class Measures:
 
     @property
     def belly(self) -> float:
-        """Height of the hull's floor: just under the road arms' pivots."""
-        return float(np.clip(self.radius + self.pivot[1] - 0.05 * self.scale, 0.3 * self.scale, 0.6 * self.scale))
+        """Height of the hull's floor as it is drawn: below the fenders however high it is given."""
+        return float(np.clip(self.floor, 0.2 * self.scale, 0.6 * self.scale))
 
     @property
     def fender(self) -> float:
@@ -157,5 +159,6 @@ def measures_of(system: System, hull: str) -> Measures:
         radius=system.r,
         links=tuple(links.tolist()),
         pivot=(2 * float(half_arm[0]), 2 * float(half_arm[1])),
+        floor=system.belly,
         hull=hull,
     )

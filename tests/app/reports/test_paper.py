@@ -14,12 +14,15 @@ from typer.testing import CliRunner, Result
 from app import cli
 from app.reports.paper import page as paper
 from app.reports.paper.findings import findings
+from app.reports.paper.links import lessons, record_texts
 from app.reports.paper.page import paper_files
 from app.reports.paper.words import change_words, list_words, share_words
+from model.paper import links as paper_links
 from model.paper import study as paper_study
+from model.paper.links import TRIED, Compared, Errors, LinksStudy, study_links
 from model.paper.study import PRELOAD, Figures, PaperStudy, StudyError, study_paper
 
-FIGURES = ("fig5_acceleration", "fig6_spectrum", "fig7_loads", "claims", "harmonics")
+FIGURES = ("fig5_acceleration", "fig6_spectrum", "fig7_loads", "claims", "harmonics", "links")
 
 
 @pytest.fixture(scope="module")
@@ -39,8 +42,17 @@ def study() -> PaperStudy:
 
 
 @pytest.fixture(scope="module")
-def files(study) -> dict[str, bytes]:
-    return paper_files(study)
+def links() -> LinksStudy:
+    """The real one with a shorter search."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(paper_links, "TRIED", {key: values[1:3] for key, values in TRIED.items()})
+        patch.setattr(paper_links, "CLOSER", ())
+        return study_links(record_texts())
+
+
+@pytest.fixture(scope="module")
+def files(study, links) -> dict[str, bytes]:
+    return paper_files(study, links)
 
 
 def trackride(*arguments: object) -> Result:
@@ -65,9 +77,10 @@ def found(study: PaperStudy) -> dict[str, tuple[str, str]]:
     }
 
 
-def test_the_command_writes_page_and_figures(study, files, tmp_path, monkeypatch):
+def test_the_command_writes_page_and_figures(study, links, files, tmp_path, monkeypatch):
     monkeypatch.setattr(paper_study, "study_paper", lambda on_progress: on_progress(1.0) or study)
-    monkeypatch.setattr(paper, "paper_files", lambda of: files if of is study else {})
+    monkeypatch.setattr(paper_links, "study_links", lambda texts, on_progress: on_progress(1.0) or links)
+    monkeypatch.setattr(paper, "paper_files", lambda *of: files if of == (study, links) else {})
     out = tmp_path / "new" / "paper"
     result = trackride("paper", "--out", out)
     assert result.exit_code == 0
@@ -85,6 +98,8 @@ def test_the_page_stands_alone_and_says_everything(study, files):
     assert not re.search(r"(src|href|srcset)=\"(?!data:)", page)
     assert "<script" not in page
     assert page.count("<picture>") == len(FIGURES)
+    for part in ("Imaginary wheels against links", "arms at the records&#x27; pose", "200 mm, 14.2 km/h"):
+        assert part in page
     for part in ("Wheel spacing 0.583 m", "Track preload 0 mm", "How the paper is read", "negative spring"):
         assert part in page
     assert "nan" not in re.sub(r"base64,[^\"]*", "", page)
@@ -126,6 +141,43 @@ def test_sentences_follow_the_numbers(study):
 
     smooth = replace(study.prescribed, harmonics=(1.0, 0.001, 0.001))
     assert found(replace(study, prescribed=smooth))["Higher harmonics"][0] == "holds"
+
+
+def test_links_on_the_real_runs(links):
+    first, worth, nearest, _, remains = lessons(links)
+    assert "Over all 9 curves the preset is off by 71 %" in first
+    assert "it is 62 %: the rest is the vehicle's pose" in first
+    assert "off by 66 %" in worth
+    assert "nearer to the links" in worth
+    assert "imaginary stiffness 16 kN/m, imaginary damping 2.5 kN s/m" in nearest
+    assert "Most is left of the acceleration" in remains
+
+
+def test_links_sentences_follow_the_numbers(links):
+    def off(by: float, peak: float = -0.1) -> Compared:
+        errors = (Errors((by, by, 1.001 * by), (peak, peak, peak)),) * 3
+        return replace(links.nearest, errors=errors)
+
+    def words(**changes: object) -> list[str]:
+        return lessons(replace(links, **changes))
+
+    assert "the vehicle's pose" not in words(assembly=off(0.8), preset=off(0.8))[0]
+    assert "hardly more or less" in words(assembly=off(0.6), without=off(0.61))[1]
+    assert "further from the links (+50 %)" in words(assembly=off(0.6), without=off(0.4))[1]
+    assert "hardly nearer than the preset's" in words(assembly=off(0.5), nearest=off(0.49))[2]
+    assert "−50 % from the preset's" in words(assembly=off(0.4), nearest=off(0.2))[2]
+    vague = dict.fromkeys(links.values, (1.0, 2.0)) | {paper_links.DAMPING: (10.0, 1000.0)}
+    assert words(as_good=vague)[3].count("little about imaginary damping") == 1
+    inside = {key: (values[0] + values[-1]) / 2 for key, values in TRIED.items()}
+    assert "edge" not in words(values=inside)[3]
+    assert (
+        "edge of what was tried for preload force"
+        in words(values=inside | {"vehicle.imaginary_suspension.preload_force": 1e6})[3]
+    )
+    for by, verdict in ((0.1, "is close to"), (0.4, "in outline"), (0.6, "not their size")):
+        assert verdict in words(nearest=off(by))[4]
+    assert "peaks are larger, by up to 10 %" in words(nearest=off(0.4, peak=0.1))[4]
+    assert "Most is left of the rise (40 %), least of the acceleration (40 %)" in words(nearest=off(0.4))[4]
 
 
 def test_numbers_in_words():

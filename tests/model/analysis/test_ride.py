@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -344,3 +345,44 @@ def test_who_slides_away_is_judged_by_the_road_that_he_slid_on():
     assert not any("sank" in what for what in whats(run))
     assert penetration(run).max() == pytest.approx(0.015, abs=0.002)
     assert energy_balance(run).closing_error < 0.01
+
+
+def floor_warnings(belly: float, drop: float, turn: float = 0.0, x: float = 0.0, **road: object) -> list[str]:
+    """Warnings of the hull's floor: a belly so high, the hull at x, in the middle sample dropped and turned."""
+    keys = {f"road.{key}": value for key, value in road.items()}
+    run = standing(FLAT.replace({"vehicle.chassis.belly_height": belly, **keys}))
+    run.q[..., 0] += x
+    run.q[2, 0, 1:] += [-drop, turn]
+    return [what for what in whats(run) if "floor" in what]
+
+
+def test_a_floor_that_would_meet_the_ground():
+    assert floor_warnings(0.4, 0.399) == []
+    (what,) = floor_warnings(0.4, 0.42)
+    assert what.startswith("The hull's floor would be 20 mm in the ground at x = ")
+    assert what.endswith("(t = 0.01 s)")
+
+
+def test_a_floor_over_an_obstacle_between_the_wheels():
+    obstacle = {"type": "half_round", "position": 4, "height": 0.2, "radius": 0.2}
+    assert floor_warnings(0.25, 0.04, x=3.5, **obstacle) == []
+    (what,) = floor_warnings(0.25, 0.06, x=3.5, **obstacle)
+    depth, x = map(float, re.findall(r"[\d.]+(?= mm| m )", what))
+    assert (depth, x) == (pytest.approx(10, abs=0.2), pytest.approx(4, abs=0.02))
+    assert floor_warnings(0.25, 0.06, x=1.5, **obstacle) == []  # ahead of the first wheel
+
+
+def test_a_floor_that_tips():
+    """Nose down by 0.1 rad about the centre of mass, 0.95 m up: the first wheel is 1.75 m ahead of it."""
+    low = 0.95 - 0.55 * np.cos(0.1) - 1.75 * np.sin(0.1)
+    (what,) = floor_warnings(0.4, low + 0.03, turn=-0.1)
+    place = 1.75 * np.cos(0.1) - 0.55 * np.sin(0.1)
+    assert what.startswith(f"The hull's floor would be 30 mm in the ground at x = {place:.2f} m")
+    assert floor_warnings(0.4, low - 0.01, turn=-0.1) == []
+
+
+def test_a_belly_that_is_not_given_is_under_the_pivots():
+    system = build_system(PAPER)
+    pivot = system.q_design[0, 1] + system.u_i[0, 1]
+    assert pivot - 0.1 < system.belly < pivot
+    assert build_system(PAPER.replace({"vehicle.chassis.belly_height": 0.33})).belly == 0.33

@@ -22,7 +22,13 @@ from model.paper.study import (
 )
 from tests.model.support import PAPER
 
-NO_MATTER = ("stop_stiffness", "stop_damping", "seat.x", "seat.y")  # to the motion of the paper's vehicle
+NO_MATTER = (
+    "stop_stiffness",
+    "stop_damping",
+    "seat.x",
+    "seat.y",
+    "belly_height",
+)  # to the motion of the paper's vehicle
 
 
 @pytest.fixture(scope="module")
