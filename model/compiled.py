@@ -33,6 +33,7 @@ _KERNELS = (
     "simulation/dense.py",
     "simulation/extremes.py",
     "simulation/steppers.py",
+    "simulation/tableaus.py",
 )
 _package = Path(__file__).parent
 

@@ -18,9 +18,7 @@ from model.simulation.dense import STAGES, Memory
 from model.simulation.extremes import RISING, Extremes, begin, forget, make_extremes, note
 from model.simulation.peaks import Peaks
 from model.simulation.steppers import (
-    DORMAND_PRINCE,
     STEPS_PER_SECOND,
-    STRETCHED,
     Samples,
     Span,
     Status,
@@ -33,6 +31,7 @@ from model.simulation.steppers import (
     stiffest_rate,
     trouble,
 )
+from model.simulation.tableaus import DORMAND_PRINCE, STRETCHED
 
 if TYPE_CHECKING:
     from scipy.integrate import OdeSolver

@@ -14,7 +14,7 @@ from model.road.road import build_road
 from model.simulation import integrate
 from model.simulation.integrate import ADAPTIVE, ADVICE, REASON, SCIPY_METHODS, Integration, Status
 from model.simulation.simulate import CHUNK, starting_state
-from model.simulation.steppers import Tableau
+from model.simulation.tableaus import Tableau
 from tests.model.support import FLAT, PAPER, WHEELS, entries
 
 COMPILED = [*ADAPTIVE, "rk4"]
