@@ -98,7 +98,7 @@ def simulate(
 
     status, advice = ("cancelled", "") if run.status is Status.RUNNING else run.ending
     n = run.samples_done
-    return Trajectory(
+    trajectory = Trajectory(
         t=np.arange(n) / settings.output_rate,
         **sampled_arrays(run.samples, n),
         tracked=run.peaks(),
@@ -114,3 +114,5 @@ def simulate(
             seconds=perf_counter() - began,
         ),
     )
+    vars(trajectory)["system"] = system  # what it would build when it is asked for
+    return trajectory

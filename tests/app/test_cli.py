@@ -17,6 +17,7 @@ from typer.testing import CliRunner, Result
 import app.server
 import model
 from app import cli
+from app.commands import common
 from model import Config, Trajectory, load_config
 from model.config.config import parse_config, preset_names
 from model.config.parameters import PARAMETER
@@ -223,7 +224,7 @@ def test_ctrl_c_keeps_the_good_part(tmp_path, monkeypatch):
 
 
 def test_a_progress_bar_stands_on_a_terminal(monkeypatch):
-    monkeypatch.setattr(cli, "errors", Console(stderr=True, force_terminal=True))
+    monkeypatch.setattr(common, "errors", Console(stderr=True, force_terminal=True))
     result = trackride("run", *SHORT, "--set", "name=[red]Tricky")
     assert result.exit_code == 0
     assert "[red]Tricky" in result.stderr
