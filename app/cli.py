@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.table import Table
 
-from app.commands import sweep as sweep_command
 from app.commands.common import (
     CANCELLED,
     DIVERGED,
@@ -30,6 +29,9 @@ from app.commands.common import (
     simulated,
     writing,
 )
+from app.commands.limits import limits
+from app.commands.sensitivity import sensitivity
+from app.commands.sweep import sweep
 
 if TYPE_CHECKING:
     from model.analysis.ride import Summary
@@ -64,7 +66,8 @@ def _print_version(wanted: bool) -> None:
         raise typer.Exit
 
 
-cli.command(epilog=sweep_command.EXAMPLE)(sweep_command.sweep)
+for study in (sweep, sensitivity, limits):
+    cli.command(epilog=sys.modules[study.__module__].EXAMPLE)(study)
 
 
 @cli.callback()

@@ -99,14 +99,11 @@ def sweep(
     with interrupt() as should_stop, writing(out):
         for row in watched(study, should_stop, base.name, before, _keeper(keep_runs), scheduler):
             table.add(row)
-            complete += row.complete
+            complete += row.outcome.complete
         table.finish()
     done = table.done - before
-    output.print(
-        f"{table.done} of {len(study.points)} runs are in {out}; {done - complete} of those now did not come to their "
-        f"end: see the column status." if complete < done else f"{table.done} runs are in {out}.",
-        markup=False, soft_wrap=True,
-    )  # fmt: skip
+    lost = f"; {done - complete} did not come to their end: see the column status" if complete < done else ""
+    output.print(f"{table.done} of {len(study.points)} runs are in {out}{lost}.", markup=False, soft_wrap=True)
     if table.done < len(study.points):
         say("Interrupted: go on with --resume.", style="red")
         raise typer.Exit(CANCELLED)

@@ -109,7 +109,7 @@ def filtered(signal: np.ndarray, rate: float, gain: Filter) -> np.ndarray:
 
 
 def _spectrum(signals: np.ndarray, rate: float) -> tuple[int, np.ndarray]:
-    """Of signals (..., N) with zeros behind them in which all filters forget them: their new length, and the spectra."""
+    """Of signals (..., N) with zeros behind them in which filters forget them: their new length, and the spectra."""
     length = 2 ** int(np.ceil(np.log2(signals.shape[-1] + DECAY * rate)))
     return length, rfft(signals, length)
 

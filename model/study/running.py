@@ -1,9 +1,12 @@
-"""Runs of a study, on all cores, and what each comes to. Of a run nothing is kept but figures."""
+"""Runs of a study, on all cores or elsewhere, and what each comes to. Of a run nothing is kept but figures."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
+from itertools import islice
+from typing import Any, NamedTuple, Protocol
 
 from model.analysis.figures import figures_by_name
 from model.analysis.ride import summary
@@ -19,12 +22,15 @@ COMPLETE = "complete"
 Keep = Callable[[int, Trajectory], None]  # gets each run, counted from 0, beside others: on any thread
 
 
-@dataclass(frozen=True)
-class Row:
-    """One run of a study. A figure that a run does not have is None; one that did not reach its end has none."""
+class Spread(Protocol):
+    """What work makes of each item, in their order, on threads here or elsewhere."""
 
-    run: int  # counted from 0
-    point: Point
+    def __call__(self, work: Callable[[Any], Any], items: Iterable[Any]) -> Generator[Any, None, None]: ...
+
+
+class Outcome(NamedTuple):
+    """What a run came to. A figure that it does not have is None; one that did not reach its end has none."""
+
     status: str  # complete | diverged at … | no rest pose: … | not allowed: … | failed: …
     figures: tuple[float | None, ...]
 
@@ -33,40 +39,87 @@ class Row:
         return self.status == COMPLETE
 
 
+@dataclass(frozen=True)
+class Row:
+    """One run of a study."""
+
+    run: int  # counted from 0
+    point: Point
+    outcome: Outcome
+
+
 def rows(
-    study: Study, first: int = 0, keep: Keep | None = None, workers: int | None = None
+    study: Study, first: int = 0, keep: Keep | None = None, spread: Spread = in_order
 ) -> Generator[Row, None, None]:
-    """The runs of a study from `first` on, in their order. A run that comes to grief is a row like the others.
-
-    workers: as many runs at a time; left out, one for each core.
-    """
+    """The runs of a study from `first` on, in their order. A run that comes to grief is a row like the others."""
     warm_up(study.base.simulation.integrator)  # compiled once, not by each worker
-    return in_order(lambda run: row(study, run, keep), range(first, len(study.points)), workers)
+    numbered = ((run, study.points[run]) for run in range(first, len(study.points)))
+    return spread(partial(_row, study.base, study.keys, study.figures, keep), numbered)
 
 
-def row(study: Study, run: int, keep: Keep | None = None) -> Row:
-    """One run."""
-    point = study.points[run]
-    status, figures = outcome(study.base, dict(zip(study.keys, point, strict=True)), study.figures, run, keep)
-    return Row(run, point, " ".join(status.split()), figures)
+def _row(
+    base: Config, keys: tuple[str, ...], figures: tuple[str, ...], keep: Keep | None, item: tuple[int, Point]
+) -> Row:
+    run, point = item
+    seen = None if keep is None else partial(keep, run)
+    return Row(run, point, outcome(base, dict(zip(keys, point, strict=True)), figures, seen))
 
 
 def outcome(
-    base: Config, changes: dict[str, Value], figures: tuple[str, ...], run: int = 0, keep: Keep | None = None
-) -> tuple[str, tuple[float | None, ...]]:
-    """What a configuration with changes comes to: status and figures."""
+    base: Config,
+    changes: Mapping[str, Value],
+    figures: tuple[str, ...],
+    keep: Callable[[Trajectory], None] | None = None,
+) -> Outcome:
+    """What a configuration with changes comes to; keep: gets the run."""
     nothing = (None,) * len(figures)
     try:
         trajectory = simulate(base.replace(changes))
         if keep is not None:
-            keep(run, trajectory)
+            keep(trajectory)
         if not trajectory.complete:
-            return trajectory.status, nothing
+            return Outcome(trajectory.status, nothing)
         named = figures_by_name(summary(trajectory))
     except ConfigError as error:
-        return f"not allowed: {error.faults[0]}", nothing
+        return Outcome(_line(f"not allowed: {error.faults[0]}"), nothing)
     except NoEquilibriumError as error:
-        return f"no rest pose: {error}", nothing
+        return Outcome(_line(f"no rest pose: {error}"), nothing)
     except (ValueError, ArithmeticError) as error:  # of thousands one that nobody thought of must not end the others
-        return f"failed: {error}", nothing
-    return COMPLETE, tuple(named.get(name) for name in figures)
+        return Outcome(_line(f"failed: {error}"), nothing)
+    return Outcome(COMPLETE, tuple(named.get(name) for name in figures))
+
+
+def _line(text: str) -> str:
+    return " ".join(text.split())
+
+
+class Job(NamedTuple):
+    """A run that an analysis asks for."""
+
+    base: Config
+    changes: Mapping[str, Value]
+    figures: tuple[str, ...]
+
+
+def done(job: Job) -> Outcome:
+    """What a job comes to."""
+    return outcome(*job)
+
+
+class Evaluate(Protocol):
+    """Does jobs, and gives what each came to, in their order. May raise to end the analysis."""
+
+    def __call__(self, jobs: list[Job]) -> list[Outcome]: ...
+
+
+def at_once(jobs: list[Job]) -> list[Outcome]:
+    """On all cores."""
+    warm_up()
+    return list(in_order(done, jobs))
+
+
+def blocks(items: Iterable[Any], size: int) -> Iterator[list[Any]]:
+    """Items in lists of that many, the last one shorter."""
+    rest = iter(items)
+    while block := list(islice(rest, size)):
+        yield block

@@ -21,7 +21,7 @@ from model.config.config import dump_config
 from model.config.parameters import PARAMETER
 from model.files import write_whole
 from model.study.design import DesignError, Study, Values
-from model.study.running import Row
+from model.study.running import Outcome, Row
 
 if TYPE_CHECKING:
     import pyarrow
@@ -142,14 +142,14 @@ def read_rows(path: Path, study: Study) -> Iterator[Row]:
         for batch in parquet.ParquetFile(path).iter_batches(BATCH):
             for entries in zip(*(column.to_pylist() for column in batch.columns), strict=True):
                 run, *rest = entries
-                yield Row(run, study.points[run], rest[keys], tuple(rest[keys + 1 :]))
+                yield Row(run, study.points[run], Outcome(rest[keys], tuple(rest[keys + 1 :])))
         return
     with path.open(encoding="utf-8", newline="") as file:
         whole = (line for line in file if line.endswith("\n"))
         for cells in csv.reader(islice(whole, 2, None)):
             run = int(cells[0])
             figures = tuple(float(cell) if cell else None for cell in cells[keys + 2 :])
-            yield Row(run, study.points[run], cells[keys + 1], figures)
+            yield Row(run, study.points[run], Outcome(cells[keys + 1], figures))
 
 
 def read_table(path: str | Path) -> pyarrow.Table:
@@ -178,8 +178,8 @@ def rows_table(study: Study, found: Sequence[Row]) -> pyarrow.Table:
     for k, of in enumerate(study.varied):
         values = [row.point[k] for row in found]
         entries.append([_text(value) for value in values] if of.listed else values)
-    entries += [[row.status for row in found]]
-    entries += [[_finite(row.figures[k]) for row in found] for k in range(len(study.figures))]
+    entries += [[row.outcome.status for row in found]]
+    entries += [[_finite(row.outcome.figures[k]) for row in found] for k in range(len(study.figures))]
     arrays = [pyarrow.array(column, field.type) for column, field in zip(entries, schema, strict=True)]
     return pyarrow.Table.from_arrays(arrays, schema=schema)
 
@@ -189,7 +189,7 @@ def _begin(path: Path, study: Study, made: Made) -> None:
 
 
 def _line(row: Row) -> str:
-    cells = [row.run, *map(_text, row.point), row.status, *map(_text, row.figures)]
+    cells = [row.run, *map(_text, row.point), row.outcome.status, *map(_text, row.outcome.figures)]
     return _csv(cells)
 
 

@@ -53,7 +53,7 @@ def whole(tmp_path_factory):
 
 def test_a_table_tells_what_made_it(tmp_path):
     status, told, said = done(*SHORT, "--keep-runs", "runs", folder=tmp_path)
-    assert (status, told, said) == (0, "5 runs are in table.parquet.\n", "")
+    assert (status, told, said) == (0, "5 of 5 runs are in table.parquet.\n", "")
     table = read_table(tmp_path / "table.parquet")
     assert table.column_names == ["run", "drive.speed_kmh", "status", "shock", "peak_load.R2"]
     assert table["drive.speed_kmh"].to_pylist() == [10, 15, 20, 25, 30]
@@ -72,7 +72,7 @@ def test_what_a_kill_leaves_goes_on_to_the_same_table(tmp_path, whole):
         "table.parquet.part: holds the runs of a study that was stopped; go on with --resume, or delete it\n",
     )
     status, told, said = done(*LONG, "--resume", folder=tmp_path)
-    assert (status, told) == (0, "60 runs are in table.parquet.\n")
+    assert (status, told) == (0, "60 of 60 runs are in table.parquet.\n")
     assert said.endswith("of 60 runs are there already.\n")
     assert read_table(tmp_path / "table.parquet").equals(whole)
     assert [path.name for path in tmp_path.iterdir()] == ["table.parquet"]
@@ -93,9 +93,7 @@ def test_a_study_of_which_no_run_comes_to_its_end(tmp_path):
     heavy = ("--set", "vehicle.imaginary_suspension.preload_force=60000")
     status, told, said = done(*SHORT, *heavy, folder=tmp_path)
     assert status == 3
-    assert (
-        told == "5 of 5 runs are in table.parquet; 5 of those now did not come to their end: see the column status.\n"
-    )
+    assert told == "5 of 5 runs are in table.parquet; 5 did not come to their end: see the column status.\n"
     assert said == "No run came to its end.\n"
     assert all(
         text.startswith("no rest pose: ") for text in read_table(tmp_path / "table.parquet")["status"].to_pylist()
@@ -112,7 +110,7 @@ def test_bad_input_names_all_faults_and_writes_nothing(tmp_path, monkeypatch):
     vary = ("--vary", "drive.speed_kmh=10:30:5")
     assert refused() == "nothing varies: give a key and its values\n"
     assert "--figures peak_loads: there is no such figure" in refused(*vary, "--figures", "peak_loads")
-    assert "sample sobol:5: such a sample" in refused(*vary, "--sample", "sobol:5")
+    assert "sobol:5: such a sample" in refused(*vary, "--sample", "sobol:5")
     assert "must end in .parquet or .csv" in refused(*vary, "--out", "table.txt")
     (tmp_path / "other.csv").write_text("a,b\n")
     assert "is no table of a study" in refused(*vary, "--out", "other.csv", "--resume")

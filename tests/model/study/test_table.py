@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from model.study.design import DesignError, Range, Study, Values, make_study
-from model.study.running import Row
+from model.study.running import Outcome, Row
 from model.study.table import KEY, Made, TableWriter, read_made, read_rows, read_table
 from tests.model.support import PAPER, WHEELS
 
@@ -25,8 +25,8 @@ def made_study(figures=("shock", "peak_load.R1"), count: int = 5) -> Study:
 
 def made_rows(study: Study) -> list[Row]:
     """With values that need all their digits, none, and words with commas."""
-    found = [Row(k, point, "complete", (k / 3 + 1e-16, -1e-300)) for k, point in enumerate(study.points)]
-    found[1] = Row(1, study.points[1], 'no rest pose: "no", it said', (None, None))
+    found = [Row(k, point, Outcome("complete", (k / 3 + 1e-16, -1e-300))) for k, point in enumerate(study.points)]
+    found[1] = Row(1, study.points[1], Outcome('no rest pose: "no", it said', (None, None)))
     return found
 
 
@@ -53,7 +53,7 @@ def test_python_reads_the_table_with_what_made_it(tmp_path, suffix):
     assert table.column_names == [
         "run", "vehicle.seat.x", f"{WHEELS}.positions", "drive.mode", "status", "shock", "peak_load.R1",
     ]  # fmt: skip
-    assert table["shock"].to_pylist() == [row.figures[0] for row in made_rows(study)]
+    assert table["shock"].to_pylist() == [row.outcome.figures[0] for row in made_rows(study)]
     assert table[f"{WHEELS}.positions"].to_pylist()[:2] == ["[1.0, 0.0, -1.0]", ""]
     assert b"Paper vehicle" in table.schema.metadata[KEY]
 
