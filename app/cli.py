@@ -29,7 +29,9 @@ from app.commands.common import (
     simulated,
     writing,
 )
+from app.commands.fit import fit
 from app.commands.limits import limits
+from app.commands.optimise import optimise
 from app.commands.sensitivity import sensitivity
 from app.commands.sweep import sweep
 
@@ -66,7 +68,7 @@ def _print_version(wanted: bool) -> None:
         raise typer.Exit
 
 
-for study in (sweep, sensitivity, limits):
+for study in (sweep, sensitivity, limits, optimise, fit):
     cli.command(epilog=sys.modules[study.__module__].EXAMPLE)(study)
 
 

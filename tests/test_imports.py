@@ -23,7 +23,7 @@ PLACES = {
     "concurrent": {"model.simulation.batch"},
     "matplotlib": {"app.reports"},
     "pyarrow": {"model.study.table"},
-    "scipy.stats": {"model.study.design", "model.study.sensitivity"},
+    "scipy.stats": {"model.study.design", "model.study.sensitivity", "model.study.fit"},
     "trimesh": {"app.view3d.meshes.solids"},
     **{nowhere: set() for nowhere in ("_thread", "queue", "multiprocessing", "dask", "distributed")},
 }
