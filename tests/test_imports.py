@@ -25,7 +25,8 @@ PLACES = {
     "pyarrow": {"model.study.table"},
     "scipy.stats": {"model.study.design", "model.study.sensitivity", "model.study.fit"},
     "trimesh": {"app.view3d.meshes.solids"},
-    **{nowhere: set() for nowhere in ("_thread", "queue", "multiprocessing", "dask", "distributed")},
+    "distributed": {"model.study.cluster"},
+    **{nowhere: set() for nowhere in ("_thread", "queue", "multiprocessing", "dask", "optuna")},
 }
 NOT_IN_MODEL = ("app", "viser", "threading", "asyncio", "trimesh", "matplotlib", "tkinter", "rich", "typer")
 # What loads no viser, so that it serves without a browser and is tested without one

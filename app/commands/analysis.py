@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -14,6 +14,7 @@ from app.commands.common import CANCELLED, check_folder, counting, fail, interru
 
 if TYPE_CHECKING:
     from model.study.memory import Memory
+    from model.study.running import Spread
 
 RUNS = "runs.jsonl"  # the runs that were done, in the folder
 
@@ -22,10 +23,32 @@ ResumeOption = Annotated[bool, typer.Option("--resume", help="Do not repeat the 
 OverOption = Annotated[
     list[str], typer.Option("--over", metavar="KEY=LO:HI", help="Change a key within a range; may be repeated.")
 ]
+SchedulerOption = Annotated[
+    str | None, typer.Option(metavar="ADDRESS", help="Run on this dask cluster, such as tcp://10.0.0.5:8786.")
+]
 
 
 @contextmanager
-def remembered(name: str, folder: Path, resume: bool, total: int) -> Iterator[Memory]:
+def spreading(scheduler: str | None) -> Iterator[Spread]:
+    """Runs on all cores here, or on a cluster; leaves when that cannot be reached."""
+    from model.simulation.batch import in_order
+
+    if scheduler is None:
+        yield in_order
+        return
+    from model.study.cluster import on_cluster
+    from model.study.design import DesignError
+
+    with ExitStack() as stack:
+        try:
+            spread = stack.enter_context(on_cluster(scheduler))
+        except DesignError as error:
+            fail(f"--scheduler {error}")
+        yield spread
+
+
+@contextmanager
+def remembered(name: str, folder: Path, resume: bool, total: int, scheduler: str | None) -> Iterator[Memory]:
     """Does an analysis's runs, about `total`, with a progress bar; leaves with what is wrong, or on Ctrl+C."""
     check_folder(folder)
     from model.study.design import DesignError
@@ -33,8 +56,8 @@ def remembered(name: str, folder: Path, resume: bool, total: int) -> Iterator[Me
 
     with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
-        with interrupt() as should_stop, counting(name, total) as count:
-            memory = Memory(folder / RUNS, version("trackride"), resume, count, should_stop)
+        with spreading(scheduler) as spread, interrupt() as should_stop, counting(name, total) as count:
+            memory = Memory(folder / RUNS, version("trackride"), resume, count, should_stop, spread)
             try:
                 yield memory
             except StoppedError:

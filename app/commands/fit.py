@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from app.commands.analysis import FolderOption, OverOption, write_results
+from app.commands.analysis import FolderOption, OverOption, SchedulerOption, spreading, write_results
 from app.commands.common import (
     CANCELLED,
     ConfigArgument,
@@ -48,6 +48,7 @@ def fit(
     ] = False,
     seed: SeedOption = 0,
     out: FolderOption = Path("fit"),
+    scheduler: SchedulerOption = None,
 ) -> None:
     """Fit values to a measured vertical acceleration by least squares, with confidence intervals at 95 %.
 
@@ -61,7 +62,6 @@ def fit(
         fail("give --measured FILE")
     from app.reports.studies.fit import files, table
     from model.analysis import signals
-    from model.simulation.batch import in_order
     from model.study import fit as fitting
     from model.study.design import DesignError
 
@@ -74,10 +74,10 @@ def fit(
         fail(f"--measured {measured}: {error}")
     point = signals.seat(base) if seat else signals.CENTRE_OF_MASS
     runs = fitting.SPREAD * len(ranges) + 10 * (len(ranges) + 1)
-    with interrupt() as should_stop, counting(base.name, runs) as count:
+    with spreading(scheduler) as everywhere, interrupt() as should_stop, counting(base.name, runs) as count:
 
         def spread(work: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:
-            for found in in_order(work, items):
+            for found in everywhere(work, items):
                 count()
                 if should_stop():
                     fail("Interrupted: nothing was written.", CANCELLED)

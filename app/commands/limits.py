@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from app.commands.analysis import FolderOption, ResumeOption, remembered, write_results
+from app.commands.analysis import FolderOption, ResumeOption, SchedulerOption, remembered, write_results
 from app.commands.common import DIVERGED, SetOption, configuration, fail, output, say
 
 EXAMPLE = "Example: trackride limits paper m113 marder --seeds 3 --out build/limits"
@@ -26,6 +26,7 @@ def limits(
     seeds: Annotated[int, typer.Option(min=1, max=100, help="Random roads of each roughness: the band.")] = 3,
     out: FolderOption = Path("limits"),
     resume: ResumeOption = False,
+    scheduler: SchedulerOption = None,
 ) -> None:
     """Find ride-limited and shock-limited speeds, as the NATO Reference Mobility Model reports them.
 
@@ -55,7 +56,7 @@ def limits(
             grounds += found.profile_grounds(base, name, points)
         vehicles.append((base, [*grounds, *found.half_round_grounds(base)]))
     runs = sum(len(SPEEDS) + found.ROUNDS for _, grounds in vehicles for _ in grounds)
-    with remembered(", ".join(base.name for base in bases), out, resume, runs) as evaluate:
+    with remembered(", ".join(base.name for base in bases), out, resume, runs, scheduler) as evaluate:
         limited = found.limits(vehicles, evaluate)
         if not any(value is not None for limit in limited for value in limit.values):
             fail("No run came to its end.", DIVERGED)

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from app.commands.analysis import FolderOption, OverOption, ResumeOption, remembered, write_results
+from app.commands.analysis import FolderOption, OverOption, ResumeOption, SchedulerOption, remembered, write_results
 from app.commands.common import ConfigArgument, SetOption, configuration, fail, output
 from app.commands.sensitivity import only_ranges
 from app.commands.sweep import SeedOption, chosen_figures, parsed
@@ -39,6 +39,7 @@ def optimise(
     seed: SeedOption = 0,
     out: FolderOption = Path("optimum"),
     resume: ResumeOption = False,
+    scheduler: SchedulerOption = None,
 ) -> None:
     """Find the values that make a figure small, or the front of two figures that cannot both be smallest.
 
@@ -61,7 +62,7 @@ def optimise(
         fail(f"--subject-to {error}")
     bases = [base, *(optimum.on_road(base, configuration(road, None)) for road in roads or ())]
     members = min(max(optimum.PER_KEY * len(ranges), optimum.LEAST), optimum.MOST)
-    with remembered(base.name, out, resume, members * (generations + 1) * len(bases)) as evaluate:
+    with remembered(base.name, out, resume, members * (generations + 1) * len(bases), scheduler) as evaluate:
         found = optimum.optimise(bases, ranges, goals, bounds, mean, generations, seed, evaluate)
     output.print(table(found))
     write_results(out, files(found, bases, ranges, mean))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from app.commands.analysis import FolderOption, OverOption, ResumeOption, remembered, write_results
+from app.commands.analysis import FolderOption, OverOption, ResumeOption, SchedulerOption, remembered, write_results
 from app.commands.common import ConfigArgument, SetOption, configuration, fail, output, say
 from app.commands.sweep import SeedOption, chosen_figures, parsed
 
@@ -30,6 +30,7 @@ def sensitivity(
     seed: SeedOption = 0,
     out: FolderOption = Path("sensitivity"),
     resume: ResumeOption = False,
+    scheduler: SchedulerOption = None,
 ) -> None:
     """Tell which values matter: Morris's screening and Sobol's indices, with bounds, as table and bar chart.
 
@@ -44,7 +45,7 @@ def sensitivity(
     from model.study.sensitivity import sensitivity as found_sensitivity
 
     runs = trajectories * (len(ranges) + 1) + samples * (len(ranges) + 2)
-    with remembered(base.name, out, resume, runs) as evaluate:
+    with remembered(base.name, out, resume, runs, scheduler) as evaluate:
         found = found_sensitivity(base, ranges, chosen, trajectories, samples, seed, evaluate)
     if found.lost:
         say(f"{found.lost} of {found.runs} runs did not come to their end; they count as the mean.", style="yellow")

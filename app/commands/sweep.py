@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 import shutil
 import sys
-from collections.abc import Callable, Generator
+from collections.abc import Callable
 from contextlib import closing
 from importlib.metadata import version
 from pathlib import Path
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from app.commands.analysis import SchedulerOption, spreading
 from app.commands.common import (
     CANCELLED,
     DIVERGED,
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
     from model.config.config import Config
     from model.simulation.trajectory import Trajectory
     from model.study.design import Study, Varied
-    from model.study.running import Row
 
 EXAMPLE = "Example: trackride sweep paper --vary drive.speed_kmh=5:40:8 --vary road.amplitude=0.05,0.1 --out speed.csv"
 MEGABYTES = 1.0  # of a kept run of 10 s of the paper's vehicle, compressed; about in proportion to its samples
@@ -50,9 +50,6 @@ FiguresOption = Annotated[
     str, typer.Option(help="Names of figures, with commas between; peak_load.R1 is that of a wheel. Left out: all.")
 ]
 SeedOption = Annotated[int, typer.Option(min=0, help="Of the sample: the same seed gives the same runs.")]
-SchedulerOption = Annotated[
-    str | None, typer.Option(metavar="ADDRESS", help="Run on this dask cluster, such as tcp://10.0.0.5:8786.")
-]
 
 
 def sweep(
@@ -76,11 +73,14 @@ def sweep(
     """
     base = configuration(config, changes)
     from model.study.design import DesignError, make_study
+    from model.study.running import rows
     from model.study.table import SUFFIXES, Made, TableWriter
 
     check_writable(out, SUFFIXES)
     if keep_runs is not None:
         check_folder(keep_runs, "--keep-runs")
+        if scheduler is not None:
+            fail("--keep-runs: the runs of a cluster are not here; leave out --keep-runs or --scheduler")
     varied, wanted = parsed(vary, "--vary", base), chosen_figures(figures, base)
     try:
         study = make_study(base, varied, wanted, sample, seed)
@@ -96,10 +96,15 @@ def sweep(
     if before:
         say(f"{out}: {before} of {len(study.points)} runs are there already.")
     complete = 0
-    with interrupt() as should_stop, writing(out):
-        for row in watched(study, should_stop, base.name, before, _keeper(keep_runs), scheduler):
-            table.add(row)
-            complete += row.outcome.complete
+    with spreading(scheduler) as spread, interrupt() as should_stop, writing(out):
+        runs = rows(study, before, _keeper(keep_runs), spread)
+        with counting(base.name, len(study.points), before) as count, closing(runs):
+            for row in runs:
+                table.add(row)
+                complete += row.outcome.complete
+                count()
+                if should_stop():
+                    break
         table.finish()
     done = table.done - before
     lost = f"; {done - complete} did not come to their end: see the column status" if complete < done else ""
@@ -135,25 +140,6 @@ def chosen_figures(text: str, base: Config, option: str = "--figures") -> tuple[
         return checked_figures([name for name in text.split(",") if name.strip()], base)
     except DesignError as error:
         fail(f"{option} {error}")
-
-
-def watched(
-    study: Study,
-    should_stop: Callable[[], bool],
-    name: str,
-    first: int = 0,
-    keep: Callable[[int, Trajectory], None] | None = None,
-    scheduler: str | None = None,
-) -> Generator[Row, None, None]:
-    """The rows of a study, with a progress bar, until Ctrl+C."""
-    from model.study.running import rows
-
-    with counting(name, len(study.points), first) as count, closing(rows(study, first, keep)) as found:
-        for row in found:
-            yield row
-            count()
-            if should_stop():
-                return
 
 
 def _keeper(folder: Path | None) -> Callable[[int, Trajectory], None] | None:

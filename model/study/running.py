@@ -53,8 +53,21 @@ def rows(
 ) -> Generator[Row, None, None]:
     """The runs of a study from `first` on, in their order. A run that comes to grief is a row like the others."""
     warm_up(study.base.simulation.integrator)  # compiled once, not by each worker
-    numbered = ((run, study.points[run]) for run in range(first, len(study.points)))
-    return spread(partial(_row, study.base, study.keys, study.figures, keep), numbered)
+    return spread(partial(_row, study.base, study.keys, study.figures, keep), _Numbered(study, first))
+
+
+@dataclass(frozen=True)
+class _Numbered:
+    """The points of a study from one on, each with its number, made as they are needed."""
+
+    study: Study
+    first: int
+
+    def __len__(self) -> int:
+        return len(self.study.points) - self.first
+
+    def __iter__(self) -> Iterator[tuple[int, Point]]:
+        return ((run, self.study.points[run]) for run in range(self.first, len(self.study.points)))
 
 
 def _row(
