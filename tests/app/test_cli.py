@@ -234,18 +234,13 @@ def test_a_progress_bar_stands_on_a_terminal(monkeypatch):
 # Report
 
 
-def test_a_report_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatch):
-    def half(self: Path, content: bytes) -> None:
-        with self.open("wb") as file:
-            file.write(content[:100])
-        raise OSError(errno.ENOSPC, "No space left on device")
-
+def test_a_report_that_cannot_be_written_leaves_the_old_one(tmp_path, full_disk):
     out = tmp_path / "report.html"
     out.write_text("the old one")
-    monkeypatch.setattr(Path, "write_bytes", half)
-    result = trackride("report", *SHORT, "--out", out)
+    with full_disk():
+        result = trackride("report", *SHORT, "--out", out)
     assert result.exit_code == 1
-    assert f"cannot write {out}: No space left on device" in result.stderr
+    assert f"cannot write {out}: File too large" in result.stderr
     assert out.read_text() == "the old one"
     assert list(tmp_path.iterdir()) == [out]
 

@@ -139,17 +139,10 @@ def test_a_folder_that_is_not_there(run, tmp_path):
 
 
 @pytest.mark.parametrize("suffix", [".npz", ".csv"])
-def test_a_file_is_written_whole_or_not_at_all(run, tmp_path, suffix, monkeypatch):
+def test_a_file_is_written_whole_or_not_at_all(run, tmp_path, suffix, full_disk):
     path = tmp_path / f"run{suffix}"
     path.write_bytes(b"what was there before")
-
-    def half(self: Path, content: bytes) -> None:
-        with self.open("wb") as file:
-            file.write(content[:100])
-        raise OSError("no space left")
-
-    monkeypatch.setattr(Path, "write_bytes", half)
-    with pytest.raises(OSError, match="no space left"):
+    with full_disk(), pytest.raises(OSError, match="File too large"):
         run.save(path)
     assert path.read_bytes() == b"what was there before"
     assert list(tmp_path.iterdir()) == [path]
