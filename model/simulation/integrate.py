@@ -195,6 +195,10 @@ class Integration:
             runge_kutta_4(*problem, *kept, span)
         else:
             self._advance_scipy(t_stop)
+        if self.status in REASON and self.samples_done == 0 and np.isfinite(self.y).all():
+            # The good part of a run has its start at least.
+            record(self.lanes, self.road, 0.0, self.y, self._memory.k[0], self._work, self.samples, 0)
+            self._clock.recorded = 1
         return self.status
 
     def _advance_scipy(self, t_stop: float) -> None:

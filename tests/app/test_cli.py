@@ -222,6 +222,29 @@ def test_ctrl_c_keeps_the_good_part(tmp_path, monkeypatch):
     assert signal.getsignal(signal.SIGINT) is before
 
 
+@pytest.mark.parametrize("times", [1, 2])
+def test_ctrl_c_while_the_file_is_written_lets_it_be_finished_and_the_second_does_not(tmp_path, monkeypatch, times):
+    before, to_bytes = signal.getsignal(signal.SIGINT), Trajectory.to_bytes
+
+    def interrupted(run: Trajectory, suffix: str) -> bytes:
+        for _ in range(times):
+            signal.raise_signal(signal.SIGINT)
+        return to_bytes(run, suffix)
+
+    monkeypatch.setattr(Trajectory, "to_bytes", interrupted)
+    out = tmp_path / "run.npz"
+    out.write_text("the old one")
+    result = trackride("run", *SHORT, "--out", out)
+    assert result.exit_code == 130
+    assert "Interrupted" in result.stderr
+    assert list(tmp_path.iterdir()) == [out]
+    if times == 1:
+        assert Trajectory.load(out).complete
+    else:
+        assert out.read_text() == "the old one"
+    assert signal.getsignal(signal.SIGINT) is before
+
+
 def test_a_progress_bar_stands_on_a_terminal(monkeypatch):
     monkeypatch.setattr(cli, "errors", Console(stderr=True, force_terminal=True))
     result = trackride("run", *SHORT, "--set", "name=[red]Tricky")
