@@ -5,22 +5,30 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from scipy.ndimage import maximum_filter1d
 
 from model.analysis.comfort import LEAST_RATE, MOST_CREST, Comfort, ride_comfort
+from model.analysis.modes import vehicle_modes
 from model.analysis.signals import Window, seat, window
-from model.config.config import Config, SineRoad
+from model.config.config import Config, Drive, FlatRoad, RandomRoad, Simulation, SineRoad, SumRoad
+from model.config.parameters import PARAMETER
 from model.dynamics.equilibrium import NoEquilibriumError, rest_pose
 from model.dynamics.vehicle import System
+from model.road.random_road import longest
 from model.road.road import Road, profile_end, profile_start
 from model.simulation.trajectory import Trajectory, wheel_names
 
 ARM_LIMIT = np.radians(45)  # turn of a road arm beyond which the model is doubtful
 SINKING_LIMIT = 0.1  # penetration, as a share of the wheel's radius
 FLOOR_STEP = 0.01  # m between points at which the hull's floor is held against the road
+FEW_WAVES = 0.65  # times the hull's slowest mode at which the longest waves are met: from there on pitch is too small …
+ENOUGH_WAVES = 0.3  # … and where enough of them are there
+WAVE_STEP = 5.0  # m, to which the length that is enough is rounded up
+STANDING = {"road": FlatRoad(), "drive": Drive(), "simulation": Simulation()}  # what does not change the hull's modes
 IN_PHASE = 0.02  # how close to a whole number of waves the wheel gaps must come
 
 
@@ -256,6 +264,7 @@ def motion_warnings(trajectory: Trajectory) -> list[RideWarning]:
         *_arms_turned_far(trajectory),
         *_vehicle_in_the_air(trajectory),
         *_wheels_in_phase(trajectory),
+        *_long_waves_missing(trajectory),
     ]
 
 
@@ -356,6 +365,34 @@ def _wheels_in_phase(trajectory: Trajectory) -> Iterator[RideWarning]:
             "All road wheels rise and fall together: the hull bounces without pitching, more than on waves a "
             "little shorter or longer.",
         )
+
+
+def _long_waves_missing(trajectory: Trajectory) -> Iterator[RideWarning]:
+    """Of a random road that begins to excite the hull only where it swings by itself."""
+    config = trajectory.config
+    roads = config.road.parts if isinstance(config.road, SumRoad) else (config.road,)
+    wave = max((longest(road) for road in roads if isinstance(road, RandomRoad)), default=None)
+    swing = None if wave is None else _slowest_swing(config.model_copy(update=STANDING))
+    if wave is None or swing is None:
+        return
+    speed = float(trajectory.system.v_ref)
+    enough = np.ceil(speed / (ENOUGH_WAVES * swing) / WAVE_STEP) * WAVE_STEP
+    enough = min(float(enough), PARAMETER["road.longest_wave"].high)
+    if speed / wave > FEW_WAVES * swing and wave < enough:
+        yield RideWarning(
+            f"At {3.6 * speed:.3g} km/h the random road's longest waves, {wave:g} m, are too short for the pitch",
+            f"They are met {speed / wave:.2f} times a second; by itself the hull swings at {swing:.2f} Hz, and slower "
+            f"waves would pitch it, too. Set longest_wave to {enough:g} m, and the road's length to no less.",
+        )
+
+
+@lru_cache(maxsize=4)
+def _slowest_swing(config: Config) -> float | None:
+    """Frequency of the hull's slower mode, Hz; None where it neither bounces nor pitches by itself."""
+    with suppress(NoEquilibriumError):
+        modes = vehicle_modes(config)
+        return min((mode.frequency for mode in (modes.bounce, modes.pitch) if mode is not None), default=None)
+    return None
 
 
 def _profile_missed(trajectory: Trajectory) -> Iterator[RideWarning]:

@@ -11,7 +11,15 @@ import pytest
 
 from model import load_config, simulate
 from model.analysis.energy import energy_balance
-from model.analysis.ride import imaginary_share, penetration, summary, suspension_travel, warnings, wheel_state
+from model.analysis.ride import (
+    imaginary_share,
+    motion_warnings,
+    penetration,
+    summary,
+    suspension_travel,
+    warnings,
+    wheel_state,
+)
 from model.analysis.signals import window
 from model.config.config import Config
 from model.dynamics.vehicle import build_system
@@ -316,6 +324,32 @@ def test_a_rolling_wheel_of_the_papers_run_hardly_slips():
     k = np.searchsorted(run.t, 4.3217)
     low, high = np.sort(run.normal_load[[k - 1, k], 3])
     assert low <= states[3].normal_load <= high
+
+
+@pytest.mark.parametrize(
+    ("vehicle", "speed", "road", "enough"),
+    [
+        ("paper", 45, {}, None),
+        ("paper", 60, {}, 55),
+        ("paper", 60, {"road.longest_wave": 55}, None),
+        ("paper", 60, {"road.longest_wave": 90, "road.length": 20}, 55),
+        ("paper", 100, {}, 90),
+        ("paper", 100, {"road.longest_wave": 90}, None),
+        ("m113", 60, {}, None),
+        ("m113", 100, {}, 65),
+        ("paper", 60, {"road.type": "sum", "road.parts": [{"type": "random"}, {"type": "step"}]}, 55),
+        ("paper", 60, {"road.type": "sine"}, None),
+    ],
+)
+def test_a_random_road_without_waves_long_enough_for_the_speed(vehicle, speed, road, enough):
+    """Pitch, rms, of the paper's vehicle is 1.2, 1.3, 1.9 times as large with waves of 90 m at 50, 60, 100 km/h."""
+    changes = {"road.type": "random", "drive.speed_kmh": speed, "simulation.duration": 0.1} | road
+    said = [
+        str(each) for each in motion_warnings(simulate(load_config(vehicle).replace(changes))) if "longest" in each.what
+    ]
+    assert len(said) == (enough is not None)
+    if enough is not None:
+        assert f"Set longest_wave to {enough} m" in said[0]
 
 
 def profile(points: str) -> Config:
