@@ -248,13 +248,13 @@ def warnings(trajectory: Trajectory, road: Road | None = None) -> list[RideWarni
     """What the reader of this run should know, each with what it means. road: another than the run's own."""
     taken = window(trajectory)
     felt = ride_comfort(trajectory, seat(trajectory.config), taken)
-    of_profile = _profile_missed(trajectory) if road is None else ()
+    of_profile = _profile_missed(trajectory, taken) if road is None else ()
     return [
         *motion_warnings(trajectory),
         *of_profile,
         *_wheels_sunk_deep(trajectory, road),
         *_belly_grounded(trajectory, road or trajectory.road),
-        *figure_warnings(trajectory.config, taken, felt),
+        *figure_warnings(trajectory.config, taken, felt, driving=road is not None),
     ]
 
 
@@ -268,9 +268,22 @@ def motion_warnings(trajectory: Trajectory) -> list[RideWarning]:
     ]
 
 
-def figure_warnings(config: Config, taken: Window, felt: Comfort | None) -> Iterator[RideWarning]:
-    """Of a run whose figures are taken from a window, and whose comfort at the driver's seat is this."""
-    if taken.shortfall:
+def figure_warnings(
+    config: Config, taken: Window, felt: Comfort | None, driving: bool = False
+) -> Iterator[RideWarning]:
+    """Of a run whose figures are taken from a window, and whose comfort at the driver's seat is this.
+
+    driving: it is a stretch of an endless drive.
+    """
+    if taken.shortfall and driving:
+        yield RideWarning("The drive has just begun", "Means, comfort and absorbed power are still settling: drive on.")
+    elif not taken.reached:
+        yield RideWarning(
+            taken.shortfall,
+            "Nothing here is of it: put it nearer (road.start of a profile, road.position of an obstacle), or let the "
+            "run last longer.",
+        )
+    elif taken.shortfall:
         yield RideWarning(taken.shortfall, "Means, comfort and absorbed power would be others in a longer run.")
     if felt is None:
         yield RideWarning(
@@ -395,14 +408,14 @@ def _slowest_swing(config: Config) -> float | None:
     return None
 
 
-def _profile_missed(trajectory: Trajectory) -> Iterator[RideWarning]:
-    """Of a measured profile that is not reached, or that ends under way."""
+def _profile_missed(trajectory: Trajectory, taken: Window) -> Iterator[RideWarning]:
+    """Of a measured profile that ends under way, or is not reached while the run's window is on something else."""
     system, config = trajectory.system, trajectory.config
     start, end = profile_start(config), profile_end(config)
     if start is None:
         return
     wheels = trajectory.q[:, system.road_wheels, 0]
-    if wheels.max() < start:
+    if wheels.max() < start and taken.reached:
         yield RideWarning(
             f"The profile was not reached: it begins at x = {start:.6g} m, the wheels came to {wheels.max():.4g} m",
             "Nothing here is of the measured road: give road.start, where its first point is to lie, or a longer run.",
