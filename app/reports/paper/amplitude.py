@@ -27,7 +27,8 @@ def amplitude_section(study: PaperStudy, half: PaperStudy) -> Iterator[Html]:
     yield element(
         "p",
         f"“100 mm amplitude” is read here as {_name(study)} from the mean of the road to a crest. It may as well mean "
-        f"100 mm from crest to trough, an amplitude of {_name(half)}. So all runs were made with that, too.",
+        f"100 mm from crest to trough, an amplitude of {_name(half)}. So the runs, all but those of the "
+        "other assumptions, were made with that, too.",
     )
     rows = [[label, of(study), of(half)] for label, of in FIGURES]
     yield wide_table(("", _name(study), _name(half)), rows, "numbers")

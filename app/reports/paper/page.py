@@ -26,7 +26,8 @@ STRETCHES = (
     f"Which stretch of a run: amplitudes, rms, shares, highest loads, parts of the time and the swing of the speed are "
     f"those of the samples in the last {WAVES} waves, when the start has died away. How far joints are apart, and the "
     "time to compute, are those of the whole run. What is said to be at rest is of the pose in which a run starts. "
-    "Figs. 5 and 7 show the whole run of the preset paper. Runs beside links have a stretch of their own, told there."
+    "Figs. 5 and 7 show the whole run of the preset paper, Fig. 6 its steady part. Runs beside links have a "
+    "stretch of their own, told there."
 )
 CLASSES = {
     "holds": "good",

@@ -76,6 +76,18 @@ def test_longer_waves_are_added_to_the_same_road():
     np.testing.assert_array_equal(rough("D", **{"road.longest_wave": 20.0}).height(x), rough("D").height(x))
 
 
+@pytest.mark.parametrize(("speed", "low", "high"), [(20, 1.0, 1.2), (60, 1.15, 1.45), (100, 1.6, 2.3)])
+def test_at_speed_the_hull_pitches_on_longer_waves_too(speed, low, high):
+    """Pitch, rms, on waves up to 90 m beside that on waves up to 20 m: hence the warning (model/analysis/ride.py)."""
+    fast = RANDOM.replace({
+        "road.roughness_class": "B", "road.length": 1000, "drive.speed_kmh": speed, "simulation.duration": 30,
+        "simulation.output_rate": 50, "simulation.rtol": 1e-3,
+    })  # fmt: skip
+    runs = [simulate(fast.replace(more)) for more in ({}, LONG)]
+    pitch = [run.q[run.t > 6, run.system.chassis, 2].std() for run in runs]
+    assert low < pitch[1] / pitch[0] < high
+
+
 def test_waves_are_no_longer_than_the_road_and_run_in_gently():
     short, long = (rough("H", **{"road.length": length, **LONG}) for length in (40.0, 400.0))
     assert short.profile.pieces[0].nodes[0] == long.profile.pieces[0].nodes[0] == 2.75
