@@ -31,6 +31,15 @@ class Curve:
 
 
 @dataclass(frozen=True)
+class Peak:
+    """The largest value of a curve of the run, which may lie between its samples."""
+
+    curve: int  # its number in the plot
+    time: float  # s
+    value: float  # in the plot's unit
+
+
+@dataclass(frozen=True)
 class Plot:
     """Curves over one axis."""
 
@@ -41,6 +50,7 @@ class Plot:
     x: np.ndarray = field(compare=False)  # (K,) rising, in the axis's unit
     values: np.ndarray = field(compare=False)  # (K, curves), in the unit; NaN where a baseline has ended
     axis: str = TIME
+    peaks: tuple[Peak, ...] = field(default=(), compare=False)
 
     @property
     def data(self) -> tuple[np.ndarray, ...]:
@@ -57,7 +67,7 @@ def load_plots(
 
     A baseline adds its curves, one for each wheel that the run has too. A wheel that is singled out leaves the others
     faded. A dotted line marks the load at rest: of that wheel, or the wheels' mean. A vehicle without imaginary wheels
-    has no plots of theirs.
+    has no plots of theirs. Each wheel's largest load during the motion is a peak of its curve.
     """
     n, m = run.system.n, run.system.m
     unit = load_unit(run.system)
@@ -76,6 +86,7 @@ def load_plots(
             run,
             baseline,
             at_rest=_at_rest(run, unit, curves, palette.hull),
+            peaks=_load_peaks(unit, run, curves),
         )
         for title, curves, values in families
     ]
@@ -102,8 +113,12 @@ def time_plot(
     run: Trajectory,
     baseline: Trajectory | None = None,
     at_rest: tuple[float, Curve] | None = None,
+    peaks: Sequence[tuple[float, float]] = (),
 ) -> Plot:
-    """A plot over time. values: run -> (N, C), a column for each curve; at_rest: a dotted line and its height."""
+    """A plot over time. values: run -> (N, C), a column for each curve; at_rest: a dotted line and its height.
+
+    peaks: time and value of each curve's peak, in the curves' order; those outside of the run's samples are left out.
+    """
     shown = values(run)
     columns, finite = [shown], np.isfinite(shown)
     if baseline is not None and len(baseline.t):
@@ -122,7 +137,12 @@ def time_plot(
         height, line = at_rest
         curves = [*curves, line]
         thinned = np.vstack([thinned.T, np.full(len(time), height)]).T
-    return Plot(title, unit, tuple(curves), least, time, np.round(thinned, DECIMALS))
+    marked = tuple(
+        Peak(k, float(at), round(float(value), DECIMALS))
+        for k, (at, value) in enumerate(peaks)
+        if len(time) and time[0] <= at <= time[-1]
+    )
+    return Plot(title, unit, tuple(curves), least, time, np.round(thinned, DECIMALS), peaks=marked)
 
 
 def at_times(t: np.ndarray, own: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -150,6 +170,14 @@ def _road_loads(unit: LoadUnit, run: Trajectory) -> np.ndarray:
 def _other_loads(unit: LoadUnit, run: Trajectory) -> np.ndarray:
     """(N, m)."""
     return unit.of(run.normal_load[:, run.system.n :])
+
+
+def _load_peaks(unit: LoadUnit, run: Trajectory, curves: Sequence[Curve]) -> list[tuple[float, float]]:
+    """Time and value of each wheel's largest load."""
+    if not len(run.t):
+        return []
+    wheels = [curve.wheel for curve in curves if curve.wheel is not None]
+    return list(zip(run.peaks.load_time[wheels], unit.of(run.peaks.load[wheels]), strict=True))
 
 
 def _share(run: Trajectory) -> np.ndarray:
