@@ -169,6 +169,12 @@ if (!window.trackridePlots) {
     }
     ctx.restore();
   };
+  // A chart is made 0 px wide. If it gets its width while it is being drawn, it may overlook the axis of time, which then
+  // has neither numbers nor lines until the width changes: it is told again.
+  const layOut = (chart) => {
+    const {width, height} = chart;
+    if (width > 0 && !chart.axes[0]._values) chart.setSize({width, height});
+  };
   const meet = (chart) => {
     met.add(chart);
     chart.root.classList.add(chart.cursor.sync.key);
@@ -202,6 +208,7 @@ if (!window.trackridePlots) {
       frame(chart);
       drawMaps();
       requestAnimationFrame(() => read(chart));
+      queueMicrotask(() => layOut(chart));
     });
     chart.over.addEventListener('mouseleave', () => setTimeout(window.trackridePlots, 0));
   };
@@ -212,6 +219,7 @@ if (!window.trackridePlots) {
       if (!seen(chart)) return inView.delete(chart);
       if (!met.has(chart)) meet(chart);
       if (!inView.has(chart)) zoom(chart);
+      layOut(chart);
       inView.add(chart);
       point(chart);
       frame(chart);

@@ -252,6 +252,26 @@ def test_a_wheel_hidden_in_a_plot_takes_its_baseline_along(at_rest: Explorer) ->
     page.wait_for_function(f"() => ({hidden})().length === 0")
 
 
+def test_charts_that_are_made_anew_while_a_run_plays_have_the_numbers_of_their_axes(at_rest: Explorer) -> None:
+    page = at_rest.page
+    show(page, "Loads")
+    at_rest.button("▶ Play").click()
+    before = at_rest.run_number()
+    at_rest.press("Speed", "ArrowRight")
+    at_rest.wait_for_run(after=before)
+    old = page.evaluate_handle(f"() => ({CHARTS})()[0]")
+    page.locator(".trackride-status").click()  # no box has the keys
+    page.keyboard.press("b")
+    page.wait_for_function(f"old => ({CHARTS})().length === 3 && ({CHARTS})()[0] !== old", arg=old)
+    numbered = f"() => ({CHARTS})().every(({{axes}}) => axes.every(axis => axis._values?.length > 2))"
+    page.wait_for_function(numbered)
+    page.evaluate(f"() => ({CHARTS})().forEach(({{axes}}) => axes[0]._values = undefined)")  # happens now and then
+    page.wait_for_function(numbered)
+    show(page, "Runs")
+    at_rest.button("Clear").click()
+    at_rest.pause()
+
+
 def test_the_other_tabs_show_spectrum_map_trust_and_equations(at_rest: Explorer) -> None:
     page = at_rest.page
     page.keyboard.press("b")  # a baseline, whose load maps stand under the run's
