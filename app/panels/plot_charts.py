@@ -38,8 +38,7 @@ class Charts:
 
     def show(self, plots: tuple[Plot, ...], height: int) -> None:
         """Show these plots, each of this height, px. Charts are made anew only when there are other curves."""
-        shapes = [[(curve.label, curve.kind) for curve in plot.curves] + [plot.title] for plot in plots]
-        before = [[(curve.label, curve.kind) for curve in plot.curves] + [plot.title] for plot in self._plots]
+        shapes, before = _shapes(plots), _shapes(self._plots)
         restyled = [plot.curves for plot in plots] != [plot.curves for plot in self._plots]
         self._plots = plots
         self._peaks.content = peaks_html(plots)  # before the curves: they are drawn with their peaks
@@ -72,7 +71,7 @@ class Charts:
         named: viser.uplot.Axis = {"labelFont": FONT, "labelSize": AXIS_NAME, "labelGap": 0}
         along, upright = axis | {"size": 24}, axis | named | {"size": 40, "space": 18, "label": plot.unit}
         kinds = {curve.kind for curve in plot.curves}
-        key = [words for kind, words in KEY.items() if kind in kinds]
+        key = [words for kind, words in KEY.items() if kind in kinds] + [plot.note] * bool(plot.note)
         return self._gui.add_uplot(
             plot.data,
             _series(plot),
@@ -91,6 +90,11 @@ class Charts:
             height=self._height + (AXIS_NAME if with_axis else 0),
             padding=PADDING,
         )
+
+
+def _shapes(plots: tuple[Plot, ...]) -> list[tuple[object, ...]]:
+    """What a chart cannot change once it is made."""
+    return [(plot.title, plot.note, *((curve.label, curve.kind) for curve in plot.curves)) for plot in plots]
 
 
 def _send(chart: viser.GuiUplotHandle, data: tuple[np.ndarray, ...]) -> None:

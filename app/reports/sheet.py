@@ -12,7 +12,7 @@ from PIL import Image
 
 from app.format.colours import Palette, wheel_palette
 from app.format.load_unit import LoadUnit, comparison_rows, load_unit
-from app.plots.curves import load_plots
+from app.plots.curves import beside_loads, load_plots
 from app.plots.ride import ride_plots
 from app.reports.drawings import AxesStyle, file_of, mark_peaks, plain_axes, stamp
 from app.reports.sheet_page import ALARM, GREY, HEIGHT, INK, LOOK, MARGIN, WIDTH, Sheet, plain
@@ -131,8 +131,9 @@ def _plots(
     height = (TOP - PICTURE - 0.32 - foot - between * (len(plots) - 1)) / len(plots)
     for k, (title, labels, colours) in enumerate(plots):
         axes = sheet.axes(MARGIN + indent, foot + k * (height + between), LEFT - indent, height)
-        if baseline is not None:
-            _draw(axes, baseline, unit, labels, colours, lw=0.7, alpha=0.5, dashes=(3, 1.5))
+        other = baseline if labels == [HULL] else beside_loads(trajectory, baseline)
+        if other is not None:
+            _draw(axes, other, unit, labels, colours, lw=0.7, alpha=0.5, dashes=(3, 1.5))
         _draw(axes, trajectory, unit, labels, colours, lw=0.8)
         axes.margins(y=0.06)
         marked = [(peaks[label], colour) for label, colour in zip(labels, colours, strict=True) if label in peaks]

@@ -53,6 +53,9 @@ class VehicleView(Protocol):
 
     def show_ghost(self, trajectory: Trajectory | None) -> None: ...
 
+    @property
+    def ghost_of_other_size(self) -> bool: ...
+
     def on_pick(self, act: Callable[[int], None]) -> None: ...
 
     def wheel_state(self, wheel: int) -> WheelState | None: ...
@@ -95,6 +98,7 @@ class Window:
         self._stands_at = monotonic() + LAID_OUT_WITHIN  # when the panels of the page are laid out, s
         self._filled = False  # the page also has what is not seen at first
         self._mode: ModeShow | None = None  # shown in the place of the run
+        self._ghost_hidden = False  # the baseline's vehicle is of another size
         self._run_number = 0
         self._road_due = 0.0  # monotonic s
         self._road_ahead = RoadAhead()
@@ -186,6 +190,13 @@ class Window:
         if self._run is not None:
             self._plot(self._plots.time)
         self.view.show_ghost(baseline)
+        self._mind_the_ghost()
+
+    def _mind_the_ghost(self) -> None:
+        """Say once why the baseline's vehicle is not seen."""
+        before, self._ghost_hidden = self._ghost_hidden, self.view.ghost_of_other_size
+        if self._ghost_hidden and not before:
+            self.say("The baseline is of another size", "Its vehicle is not drawn beside this one. Runs compares both.")
 
     def show_mode(self) -> None:
         """Show the chosen mode instead of the run, until the run plays on or another run comes."""
@@ -263,6 +274,7 @@ class Window:
         if self._to_view is not None:
             self.view.show(self._to_view)
             self._to_view = None
+            self._mind_the_ghost()
         if self._mode is not None:
             if self._mode.since is None:
                 self._mode.since = time

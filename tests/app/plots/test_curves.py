@@ -192,6 +192,18 @@ def test_a_peak_between_samples_is_marked_with_its_own_time_and_value() -> None:
     assert (peak.curve, peak.time, peak.value) == (0, 0.7533, -31.0)
 
 
+def test_loads_of_a_vehicle_of_another_size_are_left_out_and_it_is_said() -> None:
+    robot, paper = make_run(load_config("robot")), make_run()
+    for run, other in ((robot, paper), (paper, robot)):
+        road, imaginary, share = loads(run, other)
+        for plot in (road, imaginary):
+            assert plot.note == "baseline: other size"
+            assert {curve.kind for curve in plot.curves} == {"run", "static"}
+        assert not share.note
+        assert "baseline" in {curve.kind for curve in share.curves}
+    assert not loads(paper, make_run(load_config("marder")))[0].note
+
+
 def test_a_run_without_samples_can_be_plotted() -> None:
     for plot in all_plots(make_run(samples=0), make_run()) + all_plots(make_run(), make_run(samples=0)):
         assert len({len(column) for column in plot.data}) == 1

@@ -100,6 +100,7 @@ def test_csv_is_a_table_with_units(run, tmp_path):
     assert header[:3] == ["t [s]", "hull x [m]", "hull y [m]"]
     assert all(name.endswith("]") for name in header)
     assert len(rows) == 101
+    assert not any(cell in ("-0", "-0.0") for row in rows for cell in row)
     table = dict(zip(header, np.array(rows, dtype=float).T, strict=True))
     for name, values in {
         "t [s]": run.t,
