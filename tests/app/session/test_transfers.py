@@ -166,7 +166,10 @@ def test_a_figure_is_made_with_a_picture_of_the_vehicle_or_without(rig: Rig, mon
 
 
 @pytest.mark.parametrize("what", ["picture", "figure.svg"])
-def test_a_picture_taken_while_the_run_plays_shows_the_moment_that_it_says(rig: Rig, what: str) -> None:
+def test_a_picture_taken_while_the_run_plays_shows_the_moment_that_it_says(
+    rig: Rig, what: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(app.reports.sheet, "stamped_figure", lambda *of: b"a figure")
     seen: list[tuple[list[float], int]] = []
     rig.client.before_picture = lambda: seen.append((list(rig.drawing.times), rig.drawing.toggled))
     rig.send(what, playing=True, time=0.7)
