@@ -18,7 +18,7 @@ from app.panels.configuration_windows import YamlWindow, show_faults
 from app.panels.files_panel import FilesPanel
 from app.panels.notifications import Notifications
 from app.panels.page_layout import LEFT, PageLayout, Screen
-from app.panels.page_setup import add_hints, add_page, apply_theme
+from app.panels.page_setup import add_hints, add_page, apply_theme, title_html
 from app.panels.parameter_panel import ParameterPanel
 from app.panels.playback_panel import PlaybackPanel
 from app.panels.plot_panel import RUNS, PlotPanel
@@ -112,6 +112,7 @@ class Window:
             gui.main_panel.dock_left()
             gui.main_panel.set_width(LEFT)
             signs = add_page(gui)
+            self._title = signs.title
             signs.in_view.on_update(by_user(lambda event: actions.set_in_view(event.target.value), actions.fail))
             signs.in_front.on_update(
                 by_user(lambda event: actions.set_in_front(frozenset(event.target.value.split(","))), actions.fail)
@@ -149,6 +150,7 @@ class Window:
         self._leave_mode()
         run = done.trajectory
         self._run, self._run_number, self._drive = run, done.request.number, None
+        self._name_tab(run.config)
         self._plot(time)
         self._to_view, self._drawn = run, None
         if settled:
@@ -168,6 +170,7 @@ class Window:
         self._leave_mode()
         before, self._drive = self._drive, driven.state
         state = driven.state
+        self._name_tab(state.config)
         if before is None or before.past is not state.past:
             self._run = state.past
             self._plot(time)
@@ -182,6 +185,11 @@ class Window:
             self._notifications.show("diverged", "The drive came to an end", body, "orange", stays=True)
         else:
             self._notifications.forget("diverged")
+
+    def _name_tab(self, config: Config) -> None:
+        title = title_html(config)
+        if self._title.content != title:
+            self._title.content = title
 
     def show_baseline(self, baseline: Trajectory | None) -> None:
         """Compare with this run from now on; None: with no run."""
