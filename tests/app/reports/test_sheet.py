@@ -11,8 +11,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex
+from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from PIL import Image
 
@@ -54,9 +56,14 @@ def words(sheet: Sheet) -> list[str]:
     return [text.get_text() for text in placed(sheet)]
 
 
-def plots(sheet: Sheet) -> dict[str, object]:
+def plots(sheet: Sheet) -> dict[str, Axes]:
     """The axes by their titles."""
     return {axes.get_title(loc="left"): axes for axes in sheet.figure.axes if axes.get_title(loc="left")}
+
+
+def curves(axes: Axes) -> list[Line2D]:
+    """Without the dots at their peaks."""
+    return [line for line in axes.get_lines() if line.get_marker() != "o"]
 
 
 def picture(colour: tuple[int, int, int] = (250, 20, 200)) -> bytes:
@@ -138,7 +145,7 @@ def test_the_plots_show_both_runs_in_the_wheels_colours(paper, soft):
         "Normal load of imaginary wheels, kN",
         "Normal load of road wheels, kN",
     ]
-    lines = found["Normal load of road wheels, kN"].get_lines()
+    lines = curves(found["Normal load of road wheels, kN"])
     assert len(lines) == 12
     for k, line in enumerate(lines):
         run = paper if k < 6 else soft
@@ -158,7 +165,16 @@ def test_a_picture_that_is_given_is_shown_and_its_time_marked(paper):
     for axes in plots(sheet).values():
         assert list(axes.get_lines()[-1].get_xdata()) == [2.5, 2.5]
     unmarked = compose(paper, None, picture(), "Title")
-    assert len(plots(unmarked)["Normal load of road wheels, kN"].get_lines()) == 6
+    assert len(curves(plots(unmarked)["Normal load of road wheels, kN"])) == 6
+
+
+def test_peaks_are_dots_and_the_largest_has_its_number(paper):
+    axes = plots(compose(paper, None, picture(), "Title"))["Normal load of road wheels, kN"]
+    dots = [line for line in axes.get_lines() if line.get_marker() == "o"]
+    assert [float(dot.get_ydata()[0]) for dot in dots] == pytest.approx(paper.peaks.load[:6] / 1e3, abs=0.01)
+    assert [float(dot.get_xdata()[0]) for dot in dots] == pytest.approx(paper.peaks.load_time[:6])
+    assert [to_hex(dot.get_color()) for dot in dots] == list(wheel_palette(6, 5).road)
+    assert f"{paper.peaks.load[:6].max() / 1e3:.1f}" in [text.get_text() for text in axes.texts]
 
 
 def test_without_a_picture_the_vehicle_is_drawn_with_the_loads_it_has(paper):
