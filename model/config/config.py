@@ -189,6 +189,7 @@ class RandomRoad(Section):
     roughness_class: str = _field("road.roughness_class")
     seed: int = _field("road.seed")
     length: float = _field("road.length")
+    longest_wave: float = _field("road.longest_wave")
 
 
 class ProfileRoad(Section):

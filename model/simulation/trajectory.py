@@ -174,7 +174,8 @@ class Trajectory:
         text = StringIO()
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(columns)
-        writer.writerows([f"{value:.9g}" for value in row] for row in np.column_stack(list(columns.values())))
+        table = np.column_stack(list(columns.values())) + 0.0  # no minus before zero
+        writer.writerows([f"{value:.9g}" for value in row] for row in table)
         file.write(text.getvalue().encode())
 
 

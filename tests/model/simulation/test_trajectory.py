@@ -126,6 +126,11 @@ def test_csv_is_a_table_with_units(run, tmp_path):
         np.testing.assert_allclose(table[name], values, rtol=1e-8, atol=1e-12)
 
 
+def test_csv_has_no_minus_before_zero(run):
+    backwards = dataclasses.replace(run, traction=-0.0 * np.abs(run.traction))
+    assert b"-0," not in backwards.to_bytes(".csv")
+
+
 def test_bytes_are_the_files_content(run, tmp_path):
     run.save(tmp_path / "run.csv")
     assert run.to_bytes(".csv") == (tmp_path / "run.csv").read_bytes()
