@@ -6,6 +6,7 @@ The model and the viewer are imported inside the commands, so that `--help` answ
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -20,7 +21,9 @@ from app.commands.common import (
     SetOption,
     check_folder,
     check_writable,
+    compile_for,
     configuration,
+    ending_soon,
     fail,
     interrupt,
     output,
@@ -51,7 +54,7 @@ cli = typer.Typer(
 
 
 def main() -> None:
-    """Entry point of the `trackride` command."""
+    """Do what the command line says."""
     try:
         cli(prog_name="trackride")
     except OSError as error:  # of standard output: what writes files says so itself
@@ -95,7 +98,8 @@ def explore(
     start = configuration(config, changes)
     from app.server import serve
 
-    serve(start, Path(config).name, host=host, port=port, open_browser=browser)
+    with ending_soon():
+        serve(start, Path(config).name, host=host, port=port, open_browser=browser)
 
 
 @cli.command(epilog="Example: trackride run paper --set drive.speed_kmh=25 --out run.npz")
@@ -106,17 +110,20 @@ def run(
 ) -> None:
     """Run a configuration without a browser, and print its figures.
 
-    Exit status: 0 done; 2 bad input, nothing written; 3 diverged and 130 interrupted, the good part written.
+    Exit status: 0 done; 2 bad input, nothing written; 3 diverged and 130 interrupted, the good part written. A second
+    Ctrl+C ends at once, and nothing is written.
     """
     chosen = configuration(config, changes)
     if out is not None:
         check_writable(out, RUN_SUFFIXES)
-    trajectory = simulated(chosen)
-    if out is not None:
-        with writing(out):
-            trajectory.save(out)
+    compile_for(chosen)
+    with interrupt() as interrupted:
+        trajectory = simulated(chosen, interrupted)
+        if out is not None:
+            with writing(out):
+                trajectory.save(out)
     _report(trajectory)
-    _leave_unless_complete(trajectory, out)
+    _leave_unless_complete(trajectory, out, interrupted())
 
 
 @cli.command(epilog="Example: trackride show paper --set road.amplitude=0.05 > mine.yaml")
@@ -141,14 +148,16 @@ def report(
     """
     chosen = configuration(config, changes)
     check_writable(out, PAGE_SUFFIXES)
-    trajectory = simulated(chosen)
+    compile_for(chosen)
     from app.reports.run_report import report_page
     from model.files import write_whole
 
-    page = report_page(trajectory, config).encode()
-    with writing(out):
-        write_whole(out, page)
-    _leave_unless_complete(trajectory, out)
+    with interrupt() as interrupted:
+        trajectory = simulated(chosen, interrupted)
+        page = report_page(trajectory, config).encode()
+        with writing(out):
+            write_whole(out, page)
+    _leave_unless_complete(trajectory, out, interrupted())
     output.print(f"The report is in {out}.", markup=False, soft_wrap=True)
 
 
@@ -165,27 +174,32 @@ def paper(
     check_folder(out)
     from app.reports.paper.links import record_texts
     from app.reports.paper.page import paper_files
+    from model.config.config import load_config
     from model.files import write_whole
     from model.paper.links import study_links
     from model.paper.study import StudyError, study_paper
 
-    with progress("The paper's runs") as on_progress, interrupt() as should_stop:
+    compile_for(load_config("paper"))
+    with interrupt() as interrupted:
 
-        def go_on(part: float) -> None:
+        def go_on(part: float, on_progress: Callable[[float], None] | None = None) -> None:
             if on_progress is not None:
                 on_progress(part)
-            if should_stop():
+            if interrupted():
                 fail("Interrupted: nothing was written.", CANCELLED)
 
         try:
-            study = study_paper(lambda part: go_on(part / 2))
-            links = study_links(record_texts(), lambda part: go_on((1 + part) / 2))
+            with progress("The paper's runs") as on_progress:
+                study = study_paper(lambda part: go_on(part / 2, on_progress))
+                links = study_links(record_texts(), lambda part: go_on((1 + part) / 2, on_progress))
         except StudyError as error:
             fail(str(error), DIVERGED)
-    with writing(out):
-        out.mkdir(parents=True, exist_ok=True)
-        for name, content in paper_files(study, links).items():
-            write_whole(out / name, content)
+        files = paper_files(study, links)
+        go_on(1.0)
+        with writing(out):
+            out.mkdir(parents=True, exist_ok=True)
+            for name, content in files.items():
+                write_whole(out / name, content)
     output.print(f"The page is {out / 'index.html'}; its figures are beside it.", markup=False, soft_wrap=True)
 
 
@@ -231,13 +245,15 @@ def _figure_table(trajectory: Trajectory, of: Summary) -> Table:
     return table
 
 
-def _leave_unless_complete(trajectory: Trajectory, out: Path | None) -> None:
-    """Say how a run ended early, and leave with the status for it."""
+def _leave_unless_complete(trajectory: Trajectory, out: Path | None, interrupted: bool) -> None:
+    """Say how a run ended early, or that only what came after it was interrupted, and leave with the status for it."""
     if trajectory.complete:
+        if interrupted:
+            fail("Interrupted when the run was complete.", CANCELLED)
         return
     say(f"The run ended early: {trajectory.status}.", style="red")
     if trajectory.advice:
         say(trajectory.advice)
     if out is not None:
         say(f"The good part, up to t = {trajectory.t[-1]:g} s, is in {out}.")
-    raise typer.Exit(CANCELLED if trajectory.status == "cancelled" else DIVERGED)
+    raise typer.Exit(CANCELLED if interrupted else DIVERGED)

@@ -5,8 +5,11 @@ The model is imported inside the functions, so that `--help` answers at once.
 
 from __future__ import annotations
 
+import os
 import signal
+import socket
 import tempfile
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,6 +23,7 @@ if TYPE_CHECKING:
     from model.simulation.trajectory import Trajectory
 
 BAD_INPUT, DIVERGED, CANCELLED = 2, 3, 130  # exit status
+STOPPING = 1.5  # s that the explorer has to close its tabs after Ctrl+C
 
 output = Console(highlight=False)
 errors = Console(highlight=False, stderr=True)
@@ -76,14 +80,21 @@ def configuration(source: str, changes: list[str] | None) -> Config:
     return config
 
 
-def simulated(config: Config) -> Trajectory:
-    """The run, with a progress bar; Ctrl+C ends it early."""
+def compile_for(config: Config) -> None:
+    """What its run needs, while Ctrl+C still ends the process at once: a compiler heeds no other way."""
+    from model.simulation.simulate import warm_up
+
+    warm_up(config.simulation.integrator)
+
+
+def simulated(config: Config, interrupted: Callable[[], bool]) -> Trajectory:
+    """The run, with a progress bar, until it is interrupted."""
     from model import simulate
     from model.dynamics.equilibrium import NoEquilibriumError
 
     try:
-        with progress(config.name) as on_progress, interrupt() as should_stop:
-            return simulate(config, on_progress, should_stop)
+        with progress(config.name) as on_progress:
+            return simulate(config, on_progress, interrupted)
     except NoEquilibriumError as error:
         fail(str(error))
 
@@ -176,16 +187,48 @@ def counting(name: str, total: int, done: int = 0) -> Iterator[Callable[[], None
 
 @contextmanager
 def interrupt() -> Iterator[Callable[[], bool]]:
-    """Ctrl+C asks for an end between chunks, so that the good part can be kept; a second one ends at once."""
+    """Ctrl+C is noted, so that the good part can be kept and a file finished; a second one ends at once."""
     asked = False
 
     def ask(number: int, frame: object) -> None:
         nonlocal asked
         asked = True
-        signal.signal(signal.SIGINT, before)
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
     before = signal.signal(signal.SIGINT, ask)
     try:
         yield lambda: asked
+    except KeyboardInterrupt:
+        fail("Interrupted.", CANCELLED)
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+@contextmanager
+def ending_soon() -> Iterator[None]:
+    """Ctrl+C raises KeyboardInterrupt, which has a short while to end what is done here; then the process is ended.
+
+    Code that is being loaded may lose the exception, and threads that compile are waited for.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        yield
+        return
+    told, tell = socket.socketpair()
+    tell.setblocking(False)
+    ended = threading.Event()
+
+    def watch() -> None:
+        while heard := told.recv(1):
+            if signal.SIGINT in heard and not ended.wait(STOPPING):
+                os._exit(0)
+
+    threading.Thread(target=watch, name="interrupt", daemon=True).start()
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.set_wakeup_fd(tell.fileno(), warn_on_full_buffer=False)  # told also while no Python code runs
+    try:
+        yield
+    finally:
+        signal.set_wakeup_fd(-1)
+        signal.signal(signal.SIGINT, before)
+        ended.set()
+        tell.close()

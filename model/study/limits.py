@@ -18,7 +18,7 @@ from model.analysis.signals import SETTLING
 from model.config.config import Config, RandomRoad
 from model.config.parameters import Value
 from model.config.profile_points import points
-from model.road.random_road import CLASSES, RUN_IN, heights
+from model.road.random_road import CLASSES, PLACE, heights
 from model.road.road import RAMP_AHEAD
 from model.study.running import Evaluate, Job, Outcome, at_once
 
@@ -76,19 +76,19 @@ def iso_grounds(base: Config, seeds: Sequence[int]) -> list[Ground]:
     Heights half way are those of a class and of the one below it, half as high, with the same seed, added up.
     """
     wheels = base.vehicle.road_wheels
-    road = RandomRoad()
     steps = [(name, 1.0) for name in CLASSES] + [(name, 1.5) for name in CLASSES[2:-1]]
     grounds = []
     for seed in seeds:
         for name, times in sorted(steps, key=lambda step: 2.0 ** CLASSES.index(step[0]) * step[1]):
-            rms = times * float(np.std(heights(name, seed, road.length, wheels.radius)[0]))
+            road = RandomRoad(roughness_class=name, seed=seed)
+            rms = times * float(np.std(heights(road, wheels.radius)[0]))
             parts = [name] if times == 1 else [name, CLASSES[CLASSES.index(name) - 1]]
             changes: dict[str, Value] = {"road.type": "random", "road.roughness_class": name, "road.seed": seed}
             if len(parts) > 1:
                 listed = tuple({"type": "random", "roughness_class": part, "seed": seed} for part in parts)
                 changes = {"road.type": "sum", "road.parts": listed}
             words = f"class {name}" if times == 1 else f"class {name}, heights times {times:g}"
-            distance = RAMP_AHEAD + RUN_IN + wheels.x[0] - wheels.x[-1] + STRETCH
+            distance = RAMP_AHEAD + PLACE + wheels.x[0] - wheels.x[-1] + STRETCH
             grounds.append(Ground("ISO 8608", words, rms, changes, distance, seed))
     return grounds
 

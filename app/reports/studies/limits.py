@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
-from rich.table import Table
+from rich.table import Column, Table
 
 from app.format.markup import element
 from app.reports.drawings import WIDTH, Drawing, Look, panels, plain_axes
@@ -57,7 +57,9 @@ def files(found: Sequence[Limit], bases: Sequence[Config]) -> dict[str, bytes]:
 
 def table(found: Sequence[Limit], bases: Sequence[Config]) -> Table:
     """For the terminal."""
-    shown = Table("Vehicle", "Ground", "rms or height, mm", "Speed, km/h")
+    shown = Table(
+        *(Column(head, overflow="fold") for head in ("Vehicle", "Ground", "rms or height, mm", "Speed, km/h"))
+    )
     for row in _shown(found, bases):
         shown.add_row(*row)
     return shown

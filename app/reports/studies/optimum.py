@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import accumulate
 
 from matplotlib.figure import Figure
-from rich.table import Table
+from rich.table import Column, Table
 
 from app.format.markup import element
 from app.reports.drawings import WIDTH, Drawing, Look, panels, plain_axes
@@ -57,7 +57,7 @@ def files(found: Optimum, bases: Sequence[Config], over: Sequence[Range], mean: 
 def table(found: Optimum) -> Table:
     """For the terminal."""
     heads, rows = _table(found)
-    shown = Table(*heads)
+    shown = Table(*(Column(head, overflow="fold") for head in heads))
     for row in rows:
         shown.add_row(*row)
     return shown

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from rich.table import Table
+from rich.table import Column, Table
 
 from app.format.markup import element
 from app.reports.drawings import SMALL, WIDTH, Drawing, Look, plain_axes
@@ -61,7 +61,7 @@ def _shown(row: tuple[object, ...]) -> list[str]:
 
 def table(found: Sensitivity) -> Table:
     """For the terminal."""
-    shown = Table(*SHOWN)
+    shown = Table(*(Column(head, overflow="fold") for head in SHOWN))
     for row in rows(found):
         shown.add_row(*_shown(row))
     return shown
