@@ -1,4 +1,4 @@
-"""`make studies`: the studies that the README shows, with their pictures for assets/pictures, and how long each took."""
+"""`make studies`: the README's studies, with their pictures for assets/pictures, and how long each took."""
 
 from __future__ import annotations
 

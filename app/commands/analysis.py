@@ -30,9 +30,14 @@ SchedulerOption = Annotated[
 
 @contextmanager
 def spreading(scheduler: str | None) -> Iterator[Spread]:
-    """Runs on all cores here, or on a cluster; leaves when that cannot be reached."""
-    from model.simulation.batch import in_order
+    """Runs on all cores here, or on a cluster; leaves when that cannot be reached.
 
+    Before Ctrl+C is noted: a compiler heeds it in no other way.
+    """
+    from model.simulation.batch import in_order
+    from model.simulation.simulate import warm_up
+
+    warm_up()
     if scheduler is None:
         yield in_order
         return

@@ -82,37 +82,37 @@ def sweep(
         if scheduler is not None:
             fail("--keep-runs: the runs of a cluster are not here; leave out --keep-runs or --scheduler")
     varied, wanted = parsed(vary, "--vary", base), chosen_figures(figures, base)
-    try:
-        study = make_study(base, varied, wanted, sample, seed)
-        _check_space(study, out, keep_runs)
-        made = Made.by(study, version("trackride"), shlex.join(["trackride", *sys.argv[1:]]))
-        if not resume and (part := out.with_name(f"{out.name}.part")).exists():
-            fail(f"{part}: holds the runs of a study that was stopped; go on with --resume, or delete it")
-        with writing(out):
-            table = TableWriter(out, study, made, go_on=resume)
-    except DesignError as error:
-        fail(str(error))
-    before = table.done
-    if before:
-        say(f"{out}: {before} of {len(study.points)} runs are there already.")
-    complete = 0
-    with spreading(scheduler) as spread, interrupt() as should_stop, writing(out):
-        runs = rows(study, before, _keeper(keep_runs), spread)
-        with counting(base.name, len(study.points), before) as count, closing(runs):
-            for row in runs:
-                table.add(row)
-                complete += row.outcome.complete
-                count()
-                if should_stop():
-                    break
-        table.finish()
+    with spreading(scheduler) as spread:
+        try:
+            study = make_study(base, varied, wanted, sample, seed)
+            _check_space(study, out, keep_runs)
+            made = Made.by(study, version("trackride"), shlex.join(["trackride", *sys.argv[1:]]))
+            if not resume and (part := out.with_name(f"{out.name}.part")).exists():
+                fail(f"{part}: holds the runs of a study that was stopped; go on with --resume, or delete it")
+            with writing(out):
+                table = TableWriter(out, study, made, go_on=resume)
+        except DesignError as error:
+            fail(str(error))
+        before, complete = table.done, 0
+        if before:
+            say(f"{out}: {before} of {len(study.points)} runs are there already.")
+        with interrupt() as should_stop, writing(out):
+            runs = rows(study, before, _keeper(keep_runs), spread)
+            with counting(base.name, len(study.points), before) as count, closing(runs):
+                for row in runs:
+                    table.add(row)
+                    complete += row.outcome.complete
+                    count()
+                    if should_stop():
+                        break
+            table.finish()
     done = table.done - before
     lost = f"; {done - complete} did not come to their end: see the column status" if complete < done else ""
     output.print(f"{table.done} of {len(study.points)} runs are in {out}{lost}.", markup=False, soft_wrap=True)
     if table.done < len(study.points):
         say("Interrupted: go on with --resume.", style="red")
         raise typer.Exit(CANCELLED)
-    if done and not complete:
+    if not before and not complete:
         fail("No run came to its end.", DIVERGED)
 
 

@@ -61,7 +61,7 @@ def point_acceleration(trajectory: Trajectory, point: Point = CENTRE_OF_MASS) ->
     """
     hull = trajectory.system.chassis
     pitch = trajectory.q[:, hull, 2]
-    along, up, growth = trajectory.a[:, hull].T
+    along, up, growth = np.ascontiguousarray(trajectory.a[:, hull].T)
     square = trajectory.v[:, hull, 2] ** 2
     x, y = point
     cos, sin = np.cos(pitch), np.sin(pitch)

@@ -20,6 +20,7 @@ from model.study.limits import AT_ONCE, NEVER, SPEEDS, Limit
 COLOURS = ("#1864ab", "#c2410c", "#2b8a3e", "#862e9c", "#b08900", "#0b7285", "#a61e4d", "#495057")
 DARK_COLOURS = ("#74b9ff", "#ff9d5c", "#69db7c", "#da9cf0", "#f2cc4d", "#66d9e8", "#f783ac", "#ced4da")
 HEADS = ("vehicle", "figure", "bound", "ground", "name", "size_m", "seed", "speed_kmh", "note", "down_again_kmh")
+SHOWN = ("Vehicle", "Ground", "rms or height, mm", "Speed, km/h")
 RIDE, SHOCK = "Ride-limited speed (6 W), km/h", "Shock-limited speed (2.5 g), km/h"
 CAPTION = (
     "Left: fastest speed with an absorbed power of at most 6 W at the seat, over the rms of the ground's heights; the "
@@ -41,7 +42,7 @@ def files(found: Sequence[Limit], bases: Sequence[Config]) -> dict[str, bytes]:
     body = [
         element("p", COMPARED),
         element("h2", "Speeds"),
-        wide_table(("Vehicle", "Ground", "rms or height, mm", "Speed, km/h"), list(_shown(found, bases))),
+        wide_table(SHOWN, list(_shown(found, bases))),
         element("h2", "Over all speeds"),
         element("p", "In curves.csv each limit is with the figure at every speed that was tried."),
     ]

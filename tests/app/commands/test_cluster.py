@@ -98,5 +98,6 @@ def test_a_cluster_that_cannot_work_is_refused(tmp_path, monkeypatch):
     result = CliRunner().invoke(cli.cli, [*vary, "--scheduler", "tcp://127.0.0.1:1"])
     assert result.exit_code == 2
     assert "--scheduler tcp://127.0.0.1:1: no scheduler answers there" in result.stderr
+    assert list(tmp_path.iterdir()) == []
     result = CliRunner().invoke(cli.cli, [*vary, "--scheduler", "tcp://127.0.0.1:1", "--keep-runs", "runs"])
     assert "the runs of a cluster are not here" in result.stderr

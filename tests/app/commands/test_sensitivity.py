@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
+
 import pytest
 from typer.testing import CliRunner
 
 from app import cli
+from app.commands import analysis
 from tests.app.commands.support import done
 
 COMMAND = (
@@ -48,3 +51,16 @@ def test_bad_input_is_refused(arguments, words, tmp_path):
     result = CliRunner().invoke(cli.cli, ["sensitivity", "paper", *arguments, "--out", str(tmp_path / "found")])
     assert result.exit_code == 2
     assert words in result.stderr
+
+
+def test_ctrl_c_keeps_the_runs(tmp_path, monkeypatch):
+    @contextmanager
+    def interrupted():
+        yield lambda: True
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(analysis, "interrupt", interrupted)
+    result = CliRunner().invoke(cli.cli, COMMAND)
+    assert result.exit_code == 130
+    assert "Interrupted: 1 runs are kept in found/runs.jsonl; go on with --resume." in result.stderr
+    assert [path.name for path in (tmp_path / "found").iterdir()] == ["runs.jsonl"]
