@@ -353,10 +353,10 @@ def _figure_table(trajectory: Trajectory, of: Summary) -> Table:
 
 
 def _leave_unless_complete(trajectory: Trajectory, out: Path | None) -> None:
-    """Say how a run ended early, and leave with the status for it."""
+    """Say why a run is not complete, and leave with the status for it."""
     if trajectory.complete:
         return
-    _say(f"The run ended early: {trajectory.status}.", style="red")
+    _say(f"The run is not complete: {trajectory.status}.", style="red")
     if trajectory.advice:
         _say(trajectory.advice)
     if out is not None:

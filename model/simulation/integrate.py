@@ -14,6 +14,7 @@ from model.dynamics.kernel import rates
 from model.dynamics.lanes import LANES, WORK, coordinates, in_lanes, make_work
 from model.dynamics.vehicle import System
 from model.road.nearest_point import RoadTable
+from model.simulation.accuracy import APART_ALLOWED, advice, joints_apart
 from model.simulation.dense import STAGES, Memory
 from model.simulation.extremes import RISING, Extremes, begin, forget, make_extremes, note
 from model.simulation.peaks import Peaks
@@ -136,9 +137,13 @@ class Integration:
             capacity,
         )
 
-    @property
-    def ending(self) -> tuple[str, str]:
-        """For a result: "complete", "running" or how it diverged; and what to try then, else empty."""
+    def ending(self, settings: Simulation) -> tuple[str, str]:
+        """For a result: "complete", "running" or how it came to grief; and what to try then, else empty.
+
+        settings: of the run.
+        """
+        if self.status is Status.JOINTS_APART:
+            return f"inaccurate at t = {self.t:.4g} s: {joints_apart(self._clock.apart)}", advice(settings)
         if self.status in REASON:
             return f"diverged at t = {self.t:.4g} s: {REASON[self.status]}", ADVICE[self.status]
         return self.status.name.lower(), ""
@@ -253,6 +258,9 @@ class Integration:
                 t = clock.recorded / self.rate
                 row = clock.recorded - clock.taken
                 record(self.lanes, self.road, t, whole(within(t)), dy, self._work, self.samples, row)
+                if self.samples.residual[row] > APART_ALLOWED:
+                    clock.status, clock.apart = Status.JOINTS_APART, self.samples.residual[row]
+                    return
                 note(self.lanes, self._work, whole(within(t)), dy[RISING], self._extremes, t)
                 clock.recorded += 1
         clock.t = solver.t

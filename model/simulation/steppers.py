@@ -16,6 +16,7 @@ from model.compiled import compiled, inlined
 from model.dynamics.kernel import constraint_residual, loads, multipliers, rates
 from model.dynamics.lanes import INT_E, WORK, places, state_size
 from model.dynamics.vehicle import System
+from model.simulation.accuracy import APART_ALLOWED
 from model.simulation.dense import CUBIC, SPARE, state_within
 from model.simulation.extremes import begin, follow
 
@@ -44,6 +45,7 @@ class Status(IntEnum):
     TOO_MANY_STEPS = 4
     SOLVER_FAILED = 5
     RUNAWAY = 6
+    JOINTS_APART = 7
 
 
 class Samples(NamedTuple):
@@ -84,6 +86,7 @@ CLOCK = np.dtype(
         ("recorded", "i8"),  # samples
         ("taken", "i8"),  # of these, taken away to make room
         ("status", "i8"),  # a Status
+        ("apart", "f8"),  # of the joints where that ended the run, m
         ("forced", "i8"),  # steps accepted though their error was too large, since the last of a usual length
         ("fresh", "i8"),  # 1 when the derivative at y is known
     ]
@@ -93,7 +96,7 @@ CLOCK = np.dtype(
 def make_clock(step: float) -> Any:
     """What a stepper carries from step to step: a record of CLOCK's fields at t = 0. step: the first to be tried, s."""
     clock = np.recarray(1, CLOCK)
-    clock[0] = (0.0, step, np.inf, 1e-4, 0, 0, 0, 0, 0, Status.RUNNING, 0, 0)
+    clock[0] = (0.0, step, np.inf, 1e-4, 0, 0, 0, 0, 0, Status.RUNNING, 0.0, 0, 0)
     return clock[0]
 
 
@@ -236,13 +239,17 @@ def _error_of(weights, h, memory, over_scale, states):
 
 @inlined
 def _record_step(dense, last, lanes, road, work, memory, samples, clock, rate, t_new):
-    """Record the samples of the step from clock.t to t_new, as far as there is room."""
+    """Record the samples of the step from clock.t to t_new, as far as there is room and joints hold."""
     room = len(samples.residual) + clock.taken
     h = t_new - clock.t
     while clock.recorded < room and clock.recorded / rate <= t_new:
         t = clock.recorded / rate
         state_within(dense, last, h, (t - clock.t) / h, memory)
-        record(lanes, road, t, memory.between, memory.k[SPARE], work, samples, clock.recorded - clock.taken)
+        row = clock.recorded - clock.taken
+        record(lanes, road, t, memory.between, memory.k[SPARE], work, samples, row)
+        if samples.residual[row] > APART_ALLOWED:
+            clock.status, clock.apart = Status.JOINTS_APART.value, samples.residual[row]
+            break
         clock.recorded += 1
 
 
@@ -349,6 +356,8 @@ def adaptive(tableau, lanes, road, work, memory, over_scale, samples, extremes, 
             follow(tableau.dense, last, lanes, road, work, memory, extremes, clock.t, h)
             _record_step(tableau.dense, last, lanes, road, work, memory, samples, clock, span.rate, t_new)
             _move_on(memory, last, clock, h, t_new, span.end)
+            if clock.status != Status.RUNNING.value:
+                break
             # Proportional-integral step control
             factor = 0.9 * max(error, 1e-10) ** -usual * clock.last_error**0.04
             clock.step = max(h * min(max(factor, 0.2), most_growth), planned)
@@ -402,5 +411,7 @@ def runge_kutta_4(lanes, road, work, memory, samples, extremes, clock, span):
         follow(CUBIC, last, lanes, road, work, memory, extremes, t, h)
         _record_step(CUBIC, last, lanes, road, work, memory, samples, clock, span.rate, t_new)
         _move_on(memory, last, clock, h, t_new, span.end)
+        if clock.status != Status.RUNNING.value:
+            break
     if clock.status == Status.RUNNING.value and clock.t >= span.end:
         clock.status = Status.COMPLETE.value

@@ -193,7 +193,7 @@ def test_a_diverged_run_keeps_its_good_part(tmp_path):
     assert result.exit_code == 3
     run = Trajectory.load(out)
     assert run.status.startswith("diverged at t = ")
-    assert f"The run ended early: {run.status}." in result.stderr
+    assert f"The run is not complete: {run.status}." in result.stderr
     assert run.advice in result.stderr
     assert f"The good part, up to t = {run.t[-1]:g} s, is in {out}." in result.stderr
     assert "is in" not in trackride("run", *coarse).stderr
@@ -218,7 +218,7 @@ def test_ctrl_c_keeps_the_good_part(tmp_path, monkeypatch):
     run = Trajectory.load(out)
     assert run.status == "cancelled"
     assert 0 < run.t[-1] < 10
-    assert "The run ended early: cancelled." in result.stderr
+    assert "The run is not complete: cancelled." in result.stderr
     assert signal.getsignal(signal.SIGINT) is before
 
 
