@@ -42,9 +42,10 @@ def exacter(settings: Simulation) -> dict[str, float]:
         # Joints that nothing holds together are enough of a reason, unless tolerances are loose too
         for name in ("rtol", "atol"):
             now, usual = getattr(settings, name), getattr(DEFAULT, name)
-            wanted = min(now if not held else now * TIGHTER, usual)
+            key = f"simulation.{name}"
+            wanted = max(float(f"{min(now * TIGHTER if held else now, usual):.3g}"), PARAMETER[key].low)
             if wanted < now:
-                found[f"simulation.{name}"] = max(float(f"{wanted:.3g}"), PARAMETER[f"simulation.{name}"].low)
+                found[key] = wanted
     return found
 
 
@@ -53,7 +54,8 @@ def advice(settings: Simulation) -> str:
     changes = [f"{key} to {number_text(value)}" for key, value in exacter(settings).items()]
     if not changes:
         return "Lower speed, or the stiffness and damping of ground and suspension: no setting makes the steps exacter."
-    words = f"Set {' and '.join((', '.join(changes[:-1]), changes[-1]) if len(changes) > 1 else changes)}."
+    *first, last = changes
+    words = f"Set {', '.join(first)}{' and ' if first else ''}{last}."
     if settings.integrator == "rk4":
-        return f"Shorten the step: {words.lower()} Or use the {DEFAULT.integrator} integrator, which finds its steps itself."
+        return f"Shorten the step: {words.lower()} Or use {DEFAULT.integrator}, which finds its steps itself."
     return words

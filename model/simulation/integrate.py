@@ -190,7 +190,7 @@ class Integration:
     def advance(self, t_stop: float) -> Status:
         """Carry on until t ≥ t_stop, the end, trouble, or 5000 steps; the GIL is free meanwhile."""
         t_stop = min(t_stop, self.duration)
-        span = Span(float(self.rate), float(self.duration), float(t_stop), self._longest())
+        span = Span(float(self.rate), float(self.duration), float(t_stop), self._longest(), APART_ALLOWED)
         problem = self.lanes, self.road, self._work, self._memory
         kept = self.samples, self._extremes, self._clock
         if self.integrator in ADAPTIVE:

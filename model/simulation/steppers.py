@@ -16,7 +16,6 @@ from model.compiled import compiled, inlined
 from model.dynamics.kernel import constraint_residual, loads, multipliers, rates
 from model.dynamics.lanes import INT_E, WORK, places, state_size
 from model.dynamics.vehicle import System
-from model.simulation.accuracy import APART_ALLOWED
 from model.simulation.dense import CUBIC, SPARE, state_within
 from model.simulation.extremes import begin, follow
 
@@ -107,6 +106,7 @@ class Span(NamedTuple):
     end: float  # of the run
     stop: float  # of this call
     longest: float  # step
+    apart: float  # m that joints may be apart
 
 
 def error_scale(system: System, rtol: float, atol: float) -> np.ndarray:
@@ -238,16 +238,16 @@ def _error_of(weights, h, memory, over_scale, states):
 
 
 @inlined
-def _record_step(dense, last, lanes, road, work, memory, samples, clock, rate, t_new):
+def _record_step(dense, last, lanes, road, work, memory, samples, clock, span, t_new):
     """Record the samples of the step from clock.t to t_new, as far as there is room and joints hold."""
     room = len(samples.residual) + clock.taken
     h = t_new - clock.t
-    while clock.recorded < room and clock.recorded / rate <= t_new:
-        t = clock.recorded / rate
+    while clock.recorded < room and clock.recorded / span.rate <= t_new:
+        t = clock.recorded / span.rate
         state_within(dense, last, h, (t - clock.t) / h, memory)
         row = clock.recorded - clock.taken
         record(lanes, road, t, memory.between, memory.k[SPARE], work, samples, row)
-        if samples.residual[row] > APART_ALLOWED:
+        if samples.residual[row] > span.apart:
             clock.status, clock.apart = Status.JOINTS_APART.value, samples.residual[row]
             break
         clock.recorded += 1
@@ -354,7 +354,7 @@ def adaptive(tableau, lanes, road, work, memory, over_scale, samples, extremes, 
                     continue
             t_new = clock.t + h
             follow(tableau.dense, last, lanes, road, work, memory, extremes, clock.t, h)
-            _record_step(tableau.dense, last, lanes, road, work, memory, samples, clock, span.rate, t_new)
+            _record_step(tableau.dense, last, lanes, road, work, memory, samples, clock, span, t_new)
             _move_on(memory, last, clock, h, t_new, span.end)
             if clock.status != Status.RUNNING.value:
                 break
@@ -409,7 +409,7 @@ def runge_kutta_4(lanes, road, work, memory, samples, extremes, clock, span):
         if clock.status != Status.RUNNING.value:
             break
         follow(CUBIC, last, lanes, road, work, memory, extremes, t, h)
-        _record_step(CUBIC, last, lanes, road, work, memory, samples, clock, span.rate, t_new)
+        _record_step(CUBIC, last, lanes, road, work, memory, samples, clock, span, t_new)
         _move_on(memory, last, clock, h, t_new, span.end)
         if clock.status != Status.RUNNING.value:
             break

@@ -94,7 +94,7 @@ def test_figures_and_checks(page, fast):
 
 @pytest.mark.usefixtures("unpainted")
 def test_warnings_or_none():
-    assert "Nothing: arms, penetration" in words(report_page(run_of(**{"road.type": "flat"}), "paper"))
+    assert "Nothing: it is exact, and arms, penetration" in words(report_page(run_of(**{"road.type": "flat"}), "paper"))
     short = words(report_page(run_of(), "paper"))
     assert "The start has died away only after" in short
     assert " s on, like all means on this page" in short
