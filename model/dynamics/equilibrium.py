@@ -21,7 +21,7 @@ MOST_PITCH = np.radians(25)  # of the hull at rest: leaning further it has tippe
 LONGEST_STEP = 0.05  # m or rad: of the search that follows the energy downhill …
 MOST_DESCENT = 600  # … in so many steps …
 CLOSE = 1e-3  # N (or N m): … to where Newton's method takes over …
-PAST_USE = 2.0  # rad: … or where the hull or an arm has turned so far
+PAST_USE = 2.0  # rad: … or where an arm has turned so far, or the hull twice MOST_PITCH
 STARTS = ((0.0, 0.0), (0.1, 0.2), (0.1, -0.2))  # m that the vehicle is lifted and rad that it leans, as it begins
 LEAST_DAMPING = 1e-10  # of the Hessian's diagonal: keeps a spring of no stiffness from dividing by zero
 
@@ -130,7 +130,8 @@ def _descend(terms: Terms, z: np.ndarray) -> np.ndarray:
     longest = LONGEST_STEP
     for _ in range(MOST_DESCENT):
         curvature, ways = np.linalg.eigh(hessian)
-        if (curvature[0] > 0.0 and np.abs(gradient).max() <= CLOSE) or np.abs(z[1:]).max() > PAST_USE:
+        arrived = curvature[0] > 0.0 and np.abs(gradient).max() <= CLOSE
+        if arrived or abs(z[1]) > 2 * MOST_PITCH or np.abs(z[1:]).max() > PAST_USE:
             break
         least = LEAST_DAMPING * np.abs(curvature).max()
         slope = gradient @ ways
