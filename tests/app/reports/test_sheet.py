@@ -129,6 +129,9 @@ def test_the_ride_figures_stand_beside_the_baselines(paper, soft):
     sheet = compose(soft, paper, None, "Title")
     for run in (paper, soft):
         assert figure_text(summary(run).acceleration_rms) in words(sheet)
+        felt = summary(run).seat
+        assert felt is not None
+        assert {figure_text(value) for value in (felt.shock, felt.dose, felt.transient)} <= set(words(sheet))
         assert figure_text(run.normal_load[:, 0].max() / 1e3) in words(sheet)
     change = 100 * (soft.normal_load[:, 5].max() / paper.normal_load[:, 5].max() - 1)
     assert f"{change:+.1f}".replace("-", "−") in words(sheet)
@@ -249,8 +252,11 @@ def test_of_many_wheels_those_that_matter_are_told_in_type_that_can_be_read(base
     assert not any(word.startswith("Of 11") for word in words(compose(short_run({}), None, None, "")))
 
 
-def test_texts_of_a_row_do_not_run_into_each_other(paper, soft):
-    sheet = compose(soft, paper, None, "Title")
+@pytest.mark.parametrize("preset", [None, "m113", "robot"])
+def test_texts_of_a_row_do_not_run_into_each_other(paper, soft, preset):
+    """A preset's parameters, all of them unchanged against itself, stand in columns."""
+    run = soft if preset is None else simulate(load_config(preset).replace({"simulation.duration": 1.5}))
+    sheet = compose(run, paper if preset is None else run, None, "Title")
     renderer = FigureCanvasAgg(sheet.figure).get_renderer()
     rows: dict[float, list] = {}
     for text in placed(sheet):
