@@ -70,9 +70,10 @@ def rest_pose(system: System) -> tuple[np.ndarray, np.ndarray]:
     z = np.zeros(size)
     z[0] = system.q_design[0, 1] - depth(system.ground, weight.sum() / len(system.wheel))
     found = _minimise(terms, z)
-    if _trouble(found):
-        found = _let_down(terms, z)
     trouble = _trouble(found)
+    if trouble:
+        found = _let_down(terms, z)
+        trouble = _trouble(found)
     if trouble:
         raise NoEquilibriumError(trouble)
     z, _, _, sink = found
