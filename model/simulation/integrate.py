@@ -16,6 +16,7 @@ from model.dynamics.vehicle import System
 from model.road.nearest_point import RoadTable
 from model.simulation.dense import STAGES, Memory
 from model.simulation.extremes import RISING, Extremes, begin, forget, make_extremes, note
+from model.simulation.flanks import make_flanks
 from model.simulation.peaks import Peaks
 from model.simulation.steppers import (
     STEPS_PER_SECOND,
@@ -97,6 +98,7 @@ class Integration:
         self._extremes = make_extremes(system)
         self._clock = make_clock(step if integrator == "rk4" else FIRST_STEP)
         self._scale = error_scale(system, rtol, atol)
+        self._flanks = make_flanks(system, 1.0 / self._scale)
         self._stiffness = self._stiffest_rate()
 
     @property
@@ -187,9 +189,9 @@ class Integration:
         t_stop = min(t_stop, self.duration)
         span = Span(float(self.rate), float(self.duration), float(t_stop), self._longest())
         problem = self.lanes, self.road, self._work, self._memory
-        kept = self.samples, self._extremes, self._clock
+        kept = self.samples, self._extremes, self._flanks, self._clock
         if self.integrator in ADAPTIVE:
-            adaptive(ADAPTIVE[self.integrator], *problem, 1.0 / self._scale, *kept, span)
+            adaptive(ADAPTIVE[self.integrator], *problem, *kept, span)
         elif self.integrator == "rk4":
             runge_kutta_4(*problem, *kept, span)
         else:
