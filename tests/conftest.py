@@ -13,6 +13,7 @@ from xdist.scheduler import LoadScopeScheduling
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 REFERENCE = Path(__file__).parent / "reference"
+ATTACK = Path(__file__).parent / "attack"  # configurations found at random that once came to grief
 REFERENCE_CASES = sorted(path.stem for path in REFERENCE.glob("*.yaml"))
 
 

@@ -21,6 +21,8 @@ from model.compiled import compiled, inlined
 from model.dynamics.lanes import BODIES, COORDINATES, HEAD, LANES, SCRATCH_SIZE, STATE_SIZE, C, W, Y, blocks
 from model.dynamics.vehicle import System
 from model.road.nearest_point import nearest
+from model.simulation.dense import entry_within
+from model.simulation.extremes import place_of
 
 TURN = 0.02  # of a normal in a step that may be a jump, where its foot also moves further than the wheel
 JUMP = 0.01  # of a normal within RESOLUTION: else the ground is only tightly curved
@@ -85,28 +87,19 @@ def look(lanes, work, memory, flanks):
 
 
 @inlined
-def keep(flanks):
-    """What was the step's end is the next one's start."""
+def keep(flanks, watching):
+    """What was the step's end is the next one's start, unless nothing was looked at."""
     for j in range(len(flanks.normal)):
-        flanks.normal[j] = flanks.normal_next[j]
-
-
-@inlined
-def _between(memory, last, h, theta, k):
-    """Entry k of the state at t + θ h, from both ends."""
-    rest = 1.0 - theta
-    bend = h * theta * rest * (rest * memory.k[0, k] - theta * memory.k[last, k])
-    return memory.y[k] + theta * theta * (3.0 - 2.0 * theta) * (memory.y_new[k] - memory.y[k]) + bend
+        flanks.normal[j] = flanks.normal_next[j] if watching else NO_NORMAL
 
 
 @compiled
-def before_change(lanes, road, memory, last, flanks, t, h):
+def before_change(dense, last, lanes, road, memory, flanks, t, h):
     """After `look` has found some: (s until the first wheel changes flanks, which), or h and NOBODY."""
     soonest, which = h, NOBODY
     for j in range(len(flanks.normal)):
         n_low, n_high = flanks.normal[j], flanks.normal_next[j]
-        b, kind, lane = j // (2 * LANES), j // LANES % 2, j % LANES
-        x = HEAD + b * STATE_SIZE + (Y.x_w if kind == 0 else Y.x_v) + lane
+        x = place_of(j)
         y = x + LANES
         way = abs(memory.y_new[x] - memory.y[x]) + abs(memory.y_new[y] - memory.y[y])
         if max(n_low, n_high) >= NO_NORMAL or lanes.r * (abs(n_high - n_low) - TURN) <= way:
@@ -117,8 +110,8 @@ def before_change(lanes, road, memory, last, flanks, t, h):
         low, high = 0.0, 1.0
         while (high - low) * h > RESOLUTION and abs(n_high - n_low) >= JUMP:  # towards where it turns most
             theta = 0.5 * (low + high)
-            place = nearest(road, _between(memory, last, h, theta, x), _between(memory, last, h, theta, y))
-            n = place[2]
+            place_x = entry_within(dense, last, h, theta, memory, x)
+            _s, _h, n, _n_y, _d = nearest(road, place_x, entry_within(dense, last, h, theta, memory, y))
             if abs(n - n_low) > abs(n_high - n):
                 high, n_high = theta, n
             else:
