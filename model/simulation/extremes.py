@@ -22,7 +22,7 @@ from model.dynamics.vehicle import System
 from model.simulation.dense import CUBIC, SPARE, Memory, entry_within, state_within
 
 PITCH, RISING = 2, 4  # entries of the flat state: θ and ẏ of the chassis
-NEAR_TOP = 0.7  # of the largest so far: a load that rises above this may come to its peak in the next step
+NEAR_TOP = 0.85  # of the largest so far: a load that rises above this may come to its peak in the next step
 LOOKS = 3  # into a step in which a wheel lands or lifts off
 SEARCHES = 8  # for a peak, at most …
 FOUND = 0.002  # … until one looks no further than this share of it above the one before

@@ -24,7 +24,8 @@ from model.road.nearest_point import nearest
 from model.simulation.dense import entry_within
 from model.simulation.extremes import place_of
 
-TURN = 0.02  # of a normal in a step that may be a jump, where its foot also moves further than the wheel
+TURN = 0.02  # of a normal in a step that may be a jump, and more than a gentle road turns it by:
+BEND = 0.25  # of the wheel's way over its radius
 JUMP = 0.01  # of a normal within RESOLUTION: else the ground is only tightly curved
 RESOLUTION = 5e-8  # s
 MOST_CHANGES = 300  # of one wheel, each at most QUICK after the one before: then it is jammed
@@ -81,7 +82,7 @@ def look(lanes, work, memory, flanks):
                 n = n if f_n > 0.0 else NO_NORMAL
                 way = abs(there[i] - here[i]) + abs(there[LANES + i] - here[LANES + i])
                 bears = (n < NO_NORMAL) & (before[i] < NO_NORMAL)
-                turned += 1.0 if bears & (lanes.r * (abs(n - before[i]) - TURN) > way) else 0.0
+                turned += 1.0 if bears & (lanes.r * (abs(n - before[i]) - TURN) > BEND * way) else 0.0
                 after[i] = n
     return turned
 
@@ -102,7 +103,7 @@ def before_change(dense, last, lanes, road, memory, flanks, t, h):
         x = place_of(j)
         y = x + LANES
         way = abs(memory.y_new[x] - memory.y[x]) + abs(memory.y_new[y] - memory.y[y])
-        if max(n_low, n_high) >= NO_NORMAL or lanes.r * (abs(n_high - n_low) - TURN) <= way:
+        if max(n_low, n_high) >= NO_NORMAL or lanes.r * (abs(n_high - n_low) - TURN) <= BEND * way:
             continue
         if flanks.jammed_until[j] >= t:
             _jam(flanks, j, t + h)
