@@ -24,7 +24,7 @@ PLACES = {
         ),
         *("app.plots.thinning", "app.view3d.track_belt"),
     },
-    "threading": {"app.session.session", "app.session.background", "app.runs.runner"},
+    "threading": {"app.session.session", "app.session.background", "app.runs.runner", "app.cli"},
     "concurrent": {"model.simulation.batch"},
     "matplotlib": {"app.reports"},
     "trimesh": {"app.view3d.meshes.solids"},

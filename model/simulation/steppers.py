@@ -25,6 +25,7 @@ SMALLEST_STEP = 1e-10  # s
 MOST_FORCED = 100  # steps of this length until one is longer again
 OVER = 2e-7  # s that take an arm over the beginning of a stop, a wheel to another flank
 FASTEST = 1e3  # m/s: a body faster than this shows that the run has diverged
+FURTHEST = 1e20  # of the sum of a state: far above any vehicle's, and forces and accelerations are still finite
 STEPS_PER_CHUNK = 1_000  # so that a stop is heeded however stiff the run: 0.05 s at worst
 POWERS = 30  # of the Jacobian, to find its largest eigenvalue to a few per cent
 NUDGE = 1e-6  # m, rad, m/s or rad/s: a change small enough for the system to be linear
@@ -153,7 +154,7 @@ def trouble(lanes, y):
     total = 0.0
     for i in range(len(y)):
         total += y[i]
-    if not np.isfinite(total):
+    if not abs(total) < FURTHEST:
         return Status.NOT_FINITE.value
     return Status.RUNAWAY.value if fastest > FASTEST else Status.RUNNING.value
 
@@ -338,6 +339,10 @@ def adaptive(tableau, lanes, road, work, memory, samples, extremes, flanks, cloc
 
         # At a jump of the forces no step is short enough; one of SMALLEST_STEP is too short to matter
         good = error <= 1.0 or (h <= SMALLEST_STEP and clock.forced < MOST_FORCED and np.isfinite(error))
+        if good:
+            clock.status = trouble(lanes, memory.y_new)
+            if clock.status != Status.RUNNING.value:
+                break
         free, wheel = h, NOBODY  # of jumps that are known
         watching = (memory.y[0] > span.valleys_from) & (memory.y[0] < span.valleys_to)
         if watching and look(lanes, work, memory, flanks) > 0.0 and np.isfinite(error):
@@ -358,9 +363,6 @@ def adaptive(tableau, lanes, road, work, memory, samples, extremes, flanks, cloc
                 clock.step, planned = planned, 0.0
         elif good:
             clock.forced = 0 if h > 1e3 * SMALLEST_STEP else clock.forced + (error > 1.0)
-            clock.status = trouble(lanes, memory.y_new)
-            if clock.status != Status.RUNNING.value:
-                break
             keep(flanks, watching)
             if flanks.jammed[0] > 0.0:
                 release(flanks, clock.t)

@@ -399,3 +399,16 @@ def test_scipys_solvers_look_up_inside_a_step(integrator, monkeypatch):
     assert run.t == stood > 0.0
     np.testing.assert_array_equal(run.y, state)
     assert finish(run).status is Status.COMPLETE
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_a_run_that_ends_in_its_first_step_has_its_start(integrator):
+    run = start(PAPER, integrator=integrator)
+    run.y[entries(run.system, "v_y")] = -2000.0
+    begin = run.y.copy()
+    finish(run)
+    assert run.status in REASON
+    assert run.samples_done == 1
+    np.testing.assert_array_equal(run.samples.v[0, :, 1], -2000.0)
+    np.testing.assert_array_equal(run.y, begin)
+    assert np.isfinite(run.samples.a[0]).all()
