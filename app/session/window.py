@@ -254,7 +254,7 @@ class Window:
     def report_failure(self, failed: Failed) -> None:
         self._notifications.show("refused", "No run", failed.message, "red")
 
-    def show_status(self, under_way: tuple[int, float, float] | None) -> None:
+    def show_status(self, under_way: tuple[int, float | None, float] | None) -> None:
         """Say which run is shown, or how far the next one has come (number, part done, seconds so far)."""
         if self._drive is not None:
             self._controls.status.content = status_line("Drive", drive_facts(self._drive))

@@ -74,22 +74,26 @@ def simulate(
 ) -> Trajectory:
     """The whole run of a configuration.
 
-    on_progress: gets the part done, 0…1, after each chunk. should_stop: asked after each chunk; true ends the run.
+    on_progress: gets the part done, 0…1, when the model is compiled and after each chunk. should_stop: asked after each
+    chunk, and at least every 0.1 s; true ends the run.
     A run that diverges, whose joints come apart or that is stopped is returned as far as it was good, with a status
     and advice; one that does not account for its energy says so too.
     Raises NoEquilibriumError when the vehicle has no rest pose to start from.
     """
     from model.road.road import SPARE, build_road
+    from model.simulation import relief
     from model.simulation.integrate import Integration, Status
 
     warm_up(config.simulation.integrator)
+    if on_progress is not None:
+        on_progress(0.0)
     began = perf_counter()
     system, road = build_system(config), build_road(config)
     y, static_load = starting_state(system)
     settings = config.simulation
     run = Integration.of(settings, system, road.table, y, settings.duration)
     stopped = False
-    while not stopped and run.advance(run.t + CHUNK) is Status.RUNNING:
+    while not stopped and run.advance(run.t + CHUNK, should_stop) is Status.RUNNING:
         if on_progress is not None:
             on_progress(min(run.t / settings.duration, 1.0))
         stopped = should_stop is not None and should_stop()
@@ -100,6 +104,8 @@ def simulate(
         on_progress(1.0)
 
     status, to_try = ("cancelled", "") if run.status is Status.RUNNING else run.ending(settings)
+    if run.status in (Status.TOO_MANY_STEPS, Status.STEP_TOO_SMALL):
+        to_try = relief.advice(config, run) or to_try
     n = run.samples_done
     trajectory = Trajectory(
         t=np.arange(n) / settings.output_rate,
