@@ -31,7 +31,7 @@ class Spread(Protocol):
 class Outcome(NamedTuple):
     """What a run came to. A figure that it does not have is None; one that did not reach its end has none."""
 
-    status: str  # complete | diverged at … | no rest pose: … | not allowed: … | failed: …
+    status: str  # complete | diverged at … | inaccurate… | no rest pose: … | not allowed: … | failed: …
     figures: tuple[float | None, ...]
 
     @property

@@ -162,17 +162,17 @@ def test_peaks_between_samples_are_dots_that_the_axis_reaches(at_rest: Explorer)
         *(f"R{k}" for k in range(1, 7)),
         *(f"I{k}" for k in range(1, 6)),
     ]
-    page.evaluate(TELL_PEAKS, json.dumps({"kN": [["R2", 5.001, 60.0]]}))
-    reached = f"() => ({CHARTS})()[0].scales.y.max > 60"
+    page.evaluate(TELL_PEAKS, json.dumps({"kN": [["R2", 5.001, 600.0]]}))
+    reached = f"() => ({CHARTS})()[0].scales.y.max > 600"
     page.wait_for_function(reached)
-    page.wait_for_function(f"() => ({DOT})(60) === 255 && ({DOT})(50) === 0")
+    page.wait_for_function(f"() => ({DOT})(600) === 255 && ({DOT})(500) === 0")
     name = page.locator(".uplot:visible").first.locator(".u-series.run th", has_text="R2")
     name.click()  # hidden with its curve
-    page.wait_for_function(f"() => ({CHARTS})()[0].scales.y.max < 60")
+    page.wait_for_function(f"() => ({CHARTS})()[0].scales.y.max < 600")
     name.click()
     page.wait_for_function(reached)
     page.evaluate(TELL_PEAKS, own)
-    page.wait_for_function(f"() => ({CHARTS})()[0].scales.y.max < 60")
+    page.wait_for_function(f"() => ({CHARTS})()[0].scales.y.max < 600")
 
 
 def test_curves_are_thicker_than_a_pixel_where_there_is_room(at_rest: Explorer) -> None:
@@ -252,9 +252,18 @@ def test_a_wheel_hidden_in_a_plot_takes_its_baseline_along(at_rest: Explorer) ->
     page.wait_for_function(f"() => ({hidden})().length === 0")
 
 
+def clear_baseline(explorer: Explorer) -> None:
+    show(explorer.page, "Runs")
+    explorer.button("Clear").click()
+    show(explorer.page, "Loads")
+    explorer.page.wait_for_function(
+        f"() => ({CHARTS})().length === 3 && ({CHARTS})()[0].series.every(curve => curve.class !== 'baseline')"
+    )
+
+
 def test_charts_that_are_made_anew_while_a_run_plays_have_the_numbers_of_their_axes(at_rest: Explorer) -> None:
     page = at_rest.page
-    show(page, "Loads")
+    clear_baseline(at_rest)
     at_rest.button("▶ Play").click()
     before = at_rest.run_number()
     at_rest.press("Speed", "ArrowRight")
@@ -267,8 +276,7 @@ def test_charts_that_are_made_anew_while_a_run_plays_have_the_numbers_of_their_a
     page.wait_for_function(numbered)
     page.evaluate(f"() => ({CHARTS})().forEach(({{axes}}) => axes[0]._values = undefined)")  # happens now and then
     page.wait_for_function(numbered)
-    show(page, "Runs")
-    at_rest.button("Clear").click()
+    clear_baseline(at_rest)
     at_rest.pause()
 
 

@@ -18,7 +18,7 @@ from model.study.table import read_table
 from tests.app.commands.support import ROOT, done, started
 
 pytest.importorskip("distributed")
-PATIENCE = 60.0  # s
+PATIENCE = 200.0  # s
 STUDY = (
     "sweep", "--vary", "drive.speed_kmh=10:30:60", "--figures", "peak_load,energy_error", "--set",
     "simulation.duration=5", "--out",
