@@ -80,6 +80,7 @@ def write_results(folder: Path, files: Mapping[str, bytes]) -> None:
 
     with writing(folder):
         for name, content in files.items():
+            (folder / name).parent.mkdir(exist_ok=True)
             write_whole(folder / name, content)
-    others = ", ".join(name for name in files if name != "index.html")
+    others = ", ".join(dict.fromkeys(name.partition("/")[0] for name in files if name != "index.html"))
     output.print(f"The page is {folder / 'index.html'}; beside it: {others}.", markup=False, soft_wrap=True)

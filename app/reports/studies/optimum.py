@@ -26,7 +26,7 @@ def files(found: Optimum, bases: Sequence[Config], over: Sequence[Range], mean: 
     """By name: page, figure, table, and a configuration for each point of the front."""
     heads, shown = _table(found)
     single = len(found.front) == 1
-    names = ["best.yaml"] if single else [f"front-{k + 1:02d}.yaml" for k in range(len(found.front))]
+    names = ["best.yaml"] if single else [f"front/{k + 1:03d}.yaml" for k in range(len(found.front))]
     commands = [
         f"trackride explore {name}    # {_assignments(solution)}"
         for name, solution in zip(names, found.front, strict=True)
