@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+
 from model import load_config, simulate
 from tests.conftest import ATTACK
 
