@@ -17,7 +17,7 @@ def run_line(number: int, run: Trajectory) -> str:
     reached = float(run.t[-1]) if len(run.t) else 0.0
     speed = f"{reached / took:.0f}× real time" if took > 0 else ""
     facts = f"{reached:.3g} s in {1e3 * took:.0f} ms · {speed}"
-    return status_line(f"Run {number}", facts, "" if run.complete else "stopped early")
+    return status_line(f"Run {number}", facts, "" if run.complete else "not complete")
 
 
 def progress_line(number: int, part: float | None, seconds: float) -> str:

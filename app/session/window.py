@@ -158,8 +158,8 @@ class Window:
         if run.complete:
             self._notifications.forget("diverged")
         else:
-            body = f"{run.status[0].upper()}{run.status[1:]}. The plots show the run up to there. {run.advice}"
-            self._notifications.show("diverged", "The run did not come to its end", body, "orange", stays=True)
+            body = f"{run.status[0].upper()}{run.status[1:]}. The plots show the good part. {run.advice}"
+            self._notifications.show("diverged", "The run is not complete", body, "orange", stays=True)
         self._notifications.forget("refused")
 
     def show_drive(self, driven: Driven, time: float, *, settled: bool) -> None:

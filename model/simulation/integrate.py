@@ -15,6 +15,7 @@ from model.dynamics.kernel import rates
 from model.dynamics.lanes import LANES, WORK, coordinates, in_lanes, make_work, places
 from model.dynamics.vehicle import System
 from model.road.nearest_point import RoadTable
+from model.simulation.accuracy import APART_ALLOWED, advice, joints_apart
 from model.simulation.dense import STAGES, Memory
 from model.simulation.extremes import RISING, Extremes, begin, forget, make_extremes, note
 from model.simulation.flanks import make_flanks
@@ -150,9 +151,13 @@ class Integration:
             capacity,
         )
 
-    @property
-    def ending(self) -> tuple[str, str]:
-        """For a result: "complete", "running" or how it diverged; and what to try then, else empty."""
+    def ending(self, settings: Simulation) -> tuple[str, str]:
+        """For a result: "complete", "running" or how it came to grief; and what to try then, else empty.
+
+        settings: of the run.
+        """
+        if self.status is Status.JOINTS_APART:
+            return f"inaccurate at t = {self.t:.4g} s: {joints_apart(self._clock.apart)}", advice(settings)
         if self.status in REASON:
             return f"diverged at t = {self.t:.4g} s: {REASON[self.status]}", ADVICE[self.status]
         return self.status.name.lower(), ""
@@ -209,7 +214,8 @@ class Integration:
         should_stop: asked where a single step of SciPy's takes longer than that; true ends it where it began.
         """
         t_stop = min(t_stop, self.duration)
-        span = Span(float(self.rate), float(self.duration), float(t_stop), self._longest(), *self._valleys())
+        bounds = self._longest(), APART_ALLOWED, *self._valleys()
+        span = Span(float(self.rate), float(self.duration), float(t_stop), *bounds)
         problem = self.lanes, self.road, self._work, self._memory
         kept = self.samples, self._extremes, self._flanks, self._clock
         if self.integrator in ADAPTIVE:
@@ -296,6 +302,9 @@ class Integration:
                 t = clock.recorded / self.rate
                 row = clock.recorded - clock.taken
                 record(self.lanes, self.road, t, self._whole(within(t)), dy, self._work, self.samples, row)
+                if self.samples.residual[row] > APART_ALLOWED:
+                    clock.status, clock.apart = Status.JOINTS_APART, self.samples.residual[row]
+                    return
                 note(self.lanes, self._work, self._whole(within(t)), dy[RISING], self._extremes, t)
                 clock.recorded += 1
         clock.t = solver.t

@@ -47,6 +47,7 @@ class Status(IntEnum):
     TOO_MANY_STEPS = 4
     SOLVER_FAILED = 5
     RUNAWAY = 6
+    JOINTS_APART = 7
 
 
 class Samples(NamedTuple):
@@ -87,6 +88,7 @@ CLOCK = np.dtype(
         ("recorded", "i8"),  # samples
         ("taken", "i8"),  # of these, taken away to make room
         ("status", "i8"),  # a Status
+        ("apart", "f8"),  # of the joints where that ended the run, m
         ("forced", "i8"),  # steps accepted though their error was too large, since the last of a usual length
         ("fresh", "i8"),  # 1 when the derivative at y is known
     ]
@@ -96,7 +98,7 @@ CLOCK = np.dtype(
 def make_clock(step: float) -> Any:
     """What a stepper carries from step to step: a record of CLOCK's fields at t = 0. step: the first to be tried, s."""
     clock = np.recarray(1, CLOCK)
-    clock[0] = (0.0, step, np.inf, 1e-4, 0, 0, 0, 0, 0, Status.RUNNING, 0, 0)
+    clock[0] = (0.0, step, np.inf, 1e-4, 0, 0, 0, 0, 0, Status.RUNNING, 0.0, 0, 0)
     return clock[0]
 
 
@@ -107,6 +109,7 @@ class Span(NamedTuple):
     end: float  # of the run
     stop: float  # of this call
     longest: float  # step
+    apart: float  # m that joints may be apart
     valleys_from: float  # m, of the chassis: from here …
     valleys_to: float  # … to here a wheel may bridge a valley
 
@@ -242,14 +245,18 @@ def _error_of(weights, h, memory, over_scale, states):
 
 
 @inlined
-def _record_step(dense, last, lanes, road, work, memory, samples, clock, rate, t_new):
-    """Record the samples of the step from clock.t to t_new, as far as there is room."""
+def _record_step(dense, last, lanes, road, work, memory, samples, clock, span, t_new):
+    """Record the samples of the step from clock.t to t_new, as far as there is room and joints hold."""
     room = len(samples.residual) + clock.taken
     h = t_new - clock.t
-    while clock.recorded < room and clock.recorded / rate <= t_new:
-        t = clock.recorded / rate
+    while clock.recorded < room and clock.recorded / span.rate <= t_new:
+        t = clock.recorded / span.rate
         state_within(dense, last, h, (t - clock.t) / h, memory)
-        record(lanes, road, t, memory.between, memory.k[SPARE], work, samples, clock.recorded - clock.taken)
+        row = clock.recorded - clock.taken
+        record(lanes, road, t, memory.between, memory.k[SPARE], work, samples, row)
+        if samples.residual[row] > span.apart:
+            clock.status, clock.apart = Status.JOINTS_APART.value, samples.residual[row]
+            break
         clock.recorded += 1
 
 
@@ -368,8 +375,10 @@ def adaptive(tableau, lanes, road, work, memory, samples, extremes, flanks, cloc
                 release(flanks, clock.t)
             t_new = clock.t + h
             follow(tableau.dense, last, lanes, road, work, memory, extremes, clock.t, h)
-            _record_step(tableau.dense, last, lanes, road, work, memory, samples, clock, span.rate, t_new)
+            _record_step(tableau.dense, last, lanes, road, work, memory, samples, clock, span, t_new)
             _move_on(memory, last, clock, h, t_new, span.end)
+            if clock.status != Status.RUNNING.value:
+                break
             # Proportional-integral step control
             factor = 0.9 * max(error, 1e-10) ** -usual * clock.last_error**0.04
             clock.step = max(h * min(max(factor, 0.2), most_growth), planned)
@@ -421,7 +430,9 @@ def runge_kutta_4(lanes, road, work, memory, samples, extremes, flanks, clock, s
         if clock.status != Status.RUNNING.value:
             break
         follow(CUBIC, last, lanes, road, work, memory, extremes, t, h)
-        _record_step(CUBIC, last, lanes, road, work, memory, samples, clock, span.rate, t_new)
+        _record_step(CUBIC, last, lanes, road, work, memory, samples, clock, span, t_new)
         _move_on(memory, last, clock, h, t_new, span.end)
+        if clock.status != Status.RUNNING.value:
+            break
     if clock.status == Status.RUNNING.value and clock.t >= span.end:
         clock.status = Status.COMPLETE.value
