@@ -1,6 +1,6 @@
-// What the page itself does: keys that leave the camera alone, hints where viser shows none, and telling the server
-// whether the page is in view and whether the browser is set to dark pages.
-// All of it is only for comfort: without it everything works and can be read. `this` is the picture that runs this
+// What the page itself does: keys that leave the camera alone, hints where viser shows none, when a typed value counts,
+// and telling the server whether the page is in view and whether the browser is set to dark pages.
+// Without it everything works and can be read, but typed values count key by key. `this` is the picture that runs this
 // script; the rules of page.css find the page and its panel by the names that they get here.
 this.parentElement.dataset.trackride = 'page';
 this.parentElement.parentElement.dataset.trackride = 'panel';
@@ -25,6 +25,68 @@ if (!document.body.dataset.trackride) {
       hinted?.dispatchEvent(new MouseEvent(into, {clientX, clientY}));
     });
   }
+  // A typed value counts at Enter, when the box is left, or after a pause, not key by key: until then React, which holds
+  // the box's value in `defaultValue`, gets no word of it. What a box for numbers would misread (nothing, 4.7/2, a list,
+  // many decimals) goes to the server as text, and the box shows what it showed before until the server knows better.
+  const PAUSE = 1000;  // ms
+  const BOXES = '.mantine-NumberInput-input, .mantine-TextInput-input, .mantine-Textarea-input';
+  const timers = new Map();  // of the boxes with a text that does not count yet
+  const set = (box, text) => {
+    const kind = box instanceof HTMLTextAreaElement ? HTMLTextAreaElement : HTMLInputElement;
+    Object.getOwnPropertyDescriptor(kind.prototype, 'value').set.call(box, text);  // past React's own
+  };
+  const pass = (box) => box.dispatchEvent(new Event('input', {bubbles: true}));
+  const label = (part) => part.querySelector('label[for]') ?? label(part.parentElement);
+  const drop = (box) => {
+    clearTimeout(timers.get(box));
+    return timers.delete(box);
+  };
+  let told = 0;
+  const count = (box) => {
+    if (!drop(box) || !box.isConnected || box.value === box.defaultValue) return;
+    if (!box.matches('.mantine-NumberInput-input')) return pass(box);
+    const text = box.value.trim(), number = String(Number(text));
+    const {typed, decimals} = document.getElementById('trackride-style').dataset;
+    const plain = RegExp(`^-?\\d{1,12}(\\.\\d{1,${decimals}})?$`).test(number);
+    const caret = box.selectionStart;
+    set(box, box.defaultValue);
+    if (plain && /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i.test(text)) {
+      box.select();
+      box.dispatchEvent(new KeyboardEvent('keydown', {bubbles: true}));  // at which it looks what is to be replaced
+      set(box, number);
+      pass(box);
+      box.setSelectionRange(caret, caret);
+    } else {
+      const sign = document.querySelector(`[data-trackride="page"] ~ div:has(label[for="${typed}"]) input`);
+      set(sign, JSON.stringify([label(box).htmlFor, text, ++told]));
+      pass(sign);
+    }
+  };
+  const on = (names, act) => names.split(' ').forEach((name) => document.addEventListener(name, (event) => {
+    if (event.isTrusted && event.target.matches?.(BOXES)) act(event.target, event);
+  }, true));
+  on('input', (box, event) => {
+    event.stopImmediatePropagation();
+    drop(box);
+    timers.set(box, setTimeout(count, PAUSE, box));
+  });
+  on('change', (box, event) => {
+    event.stopImmediatePropagation();
+    count(box);
+  });
+  on('focusout', (box, event) => {
+    count(box);
+    if (box.matches('.mantine-NumberInput-input')) event.stopImmediatePropagation();  // at which it moves to the slider's end
+  });
+  on('keydown', (box, {key}) => {
+    if (key === 'Escape' && drop(box)) set(box, box.defaultValue);
+    if (key === 'Enter' && box.tagName === 'INPUT'
+      || ['ArrowUp', 'ArrowDown'].includes(key) && box.matches('.mantine-NumberInput-input'))
+      count(box);
+  });
+  document.addEventListener('pointerdown', ({target}) => {
+    for (const box of [...timers.keys()]) if (box !== target) count(box);
+  }, true);
   // Hidden checkboxes, whose ids stand in the data of the style, carry what the page tells: a page in the background
   // takes the tick from one, and a browser that is set to dark pages gives the other its tick
   const tick = (name, on) => {

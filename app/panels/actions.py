@@ -14,7 +14,13 @@ class Actions(Protocol):
     # Parameters and road
 
     def change(self, key: str, value: Any) -> None:
-        """Give a parameter another value, as in a file."""
+        """Give a parameter another value, as in a file. The user may still be moving its control."""
+
+    def enter(self, key: str, value: Any) -> None:
+        """Give a parameter a value that was typed as text: it is there as a whole, and its control may follow."""
+
+    def refuse_text(self, text: str) -> None:
+        """Say that a typed text is no value."""
 
     def load(self, preset: str) -> None:
         """Take a preset, by its name."""

@@ -9,6 +9,7 @@ import viser
 
 from app.format.assets import asset
 from app.format.markup import element, joined, running, style
+from app.panels.controls import PRECISION
 
 BRAND = (28, 108, 178)
 INTRO = "Move a slider: the run is computed anew. Ctrl+K: all keys."
@@ -25,21 +26,30 @@ class PageSigns(NamedTuple):
     in_view: viser.GuiCheckboxHandle  # ticked while the page is in view
     in_front: viser.GuiTextHandle  # names of the tabs in front, with commas between, once the page shows the panels
     night: viser.GuiCheckboxHandle  # ticked where the browser is set to dark pages
+    typed: viser.GuiTextHandle  # JSON: viser's name of a box for numbers, what was typed there and is none, a count
 
 
 def add_page(gui: viser.GuiApi) -> PageSigns:
     """Add rules and script of the page, and the controls by which it tells something.
 
-    page.js sets the two checkboxes, plots.js writes which tabs are in front.
+    page.js sets all but the tabs in front, which plots.js writes.
     """
     page = gui.add_html("")
     in_view = gui.add_checkbox("In view", True)
     in_front = gui.add_text("Tabs in front", "")
     night = gui.add_checkbox("Dark pages", False)
-    rules = style(asset("page.css"), id="trackride-style", data_in_view=in_view._impl.uuid, data_night=night._impl.uuid)
+    typed = gui.add_text("Typed", "")
+    rules = style(
+        asset("page.css"),
+        id="trackride-style",
+        data_in_view=in_view._impl.uuid,
+        data_night=night._impl.uuid,
+        data_typed=typed._impl.uuid,
+        data_decimals=str(PRECISION),
+    )
     intro = element("p", INTRO, class_="trackride-intro")
     page.content = str(joined((running(asset("page.js")), intro, rules)))
-    return PageSigns(in_view, in_front, night)
+    return PageSigns(in_view, in_front, night, typed)
 
 
 def add_hints(gui: viser.GuiApi) -> None:

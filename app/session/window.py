@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping
 from time import monotonic
 from typing import Any, Protocol
@@ -15,6 +16,7 @@ from app.format.parameters import refusal
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.panels.configuration_windows import YamlWindow, show_faults
+from app.panels.controls import PRECISION
 from app.panels.files_panel import FilesPanel
 from app.panels.notifications import Notifications
 from app.panels.page_layout import LEFT, PageLayout, Screen
@@ -34,6 +36,7 @@ from app.tabs.road_profile import RoadAhead
 from app.view3d.mode_animation import PERIOD, ModeShow
 from model.analysis.ride import WheelState
 from model.config.config import Config, ConfigError
+from model.config.validation import shorten
 from model.road.road import Road
 from model.simulation.trajectory import Trajectory
 
@@ -113,6 +116,9 @@ class Window:
                 by_user(lambda event: actions.set_in_front(frozenset(event.target.value.split(","))), actions.fail)
             )
             signs.night.on_update(by_user(lambda event: actions.prefer_dark(event.target.value), actions.fail))
+            signs.typed.on_update(
+                by_user(lambda event: self._controls.enter(*json.loads(event.target.value)[:2]), actions.fail)
+            )
             self._controls = ParameterPanel(gui, presets, preset, config, actions)
             with self._controls.middle:
                 self._folders = [gui.add_folder(name, expand_by_default=False) for name in FOLDERS]
@@ -224,13 +230,10 @@ class Window:
         self._notifications.show("refused", "Not possible", body, "red")
         self._controls.show(instead)
 
-    def show_value(self, key: str, value: Any) -> None:
-        """Move a control."""
-        self._controls[key].show(value)
-
-    def was_moved_to_end(self, key: str, requested: Any) -> bool:
-        """Whether the page moved a slider to its end because the requested value lies beyond it."""
-        return self._controls[key].was_moved_to_end(requested)
+    def refuse_text(self, text: str) -> None:
+        """Say that a typed text is no value of a control that takes numbers."""
+        body = f"{shorten(text)} is not understood. Give a number with at most {PRECISION} decimals."
+        self._notifications.show("refused", "Not possible", body, "red")
 
     def report_failure(self, failed: Failed) -> None:
         self._notifications.show("refused", "No run", failed.message, "red")
