@@ -4,6 +4,20 @@
 // script; the rules of page.css find the page and its panel by the names that they get here.
 this.parentElement.dataset.trackride = 'page';
 this.parentElement.parentElement.dataset.trackride = 'panel';
+// Hidden boxes of text, whose ids stand in the data of the style, carry what the page tells
+const set = (box, text) => {
+  const kind = box instanceof HTMLTextAreaElement ? HTMLTextAreaElement : HTMLInputElement;
+  Object.getOwnPropertyDescriptor(kind.prototype, 'value').set.call(box, text);  // past React's own
+};
+const pass = (box) => box.dispatchEvent(new Event('input', {bubbles: true}));
+const tell = (name, text) => {
+  const id = document.getElementById('trackride-style').dataset[name];
+  const sign = document.querySelector(`label[for="${id}"]`).closest('[data-trackride="page"] ~ div').querySelector('input');
+  set(sign, text);
+  pass(sign);
+};
+// A tab whose page is loaded anew goes on where it was, whatever other tabs of this browser have stored since
+setTimeout(() => tell('visit', sessionStorage.getItem('trackride') ?? 'null'));
 if (!document.body.dataset.trackride) {
   document.body.dataset.trackride = 'keys';
   // viser turns and moves the camera with some of our keys, wherever they are pressed, on a slider too
@@ -31,11 +45,6 @@ if (!document.body.dataset.trackride) {
   const PAUSE = 1000;  // ms
   const BOXES = '.mantine-NumberInput-input, .mantine-TextInput-input, .mantine-Textarea-input';
   const timers = new Map();  // of the boxes with a text that does not count yet
-  const set = (box, text) => {
-    const kind = box instanceof HTMLTextAreaElement ? HTMLTextAreaElement : HTMLInputElement;
-    Object.getOwnPropertyDescriptor(kind.prototype, 'value').set.call(box, text);  // past React's own
-  };
-  const pass = (box) => box.dispatchEvent(new Event('input', {bubbles: true}));
   const label = (part) => part.querySelector('label[for]') ?? label(part.parentElement);
   const drop = (box) => {
     clearTimeout(timers.get(box));
@@ -46,7 +55,7 @@ if (!document.body.dataset.trackride) {
     if (!drop(box) || !box.isConnected || box.value === box.defaultValue) return;
     if (!box.matches('.mantine-NumberInput-input')) return pass(box);
     const text = box.value.trim(), number = String(Number(text));
-    const {typed, decimals} = document.getElementById('trackride-style').dataset;
+    const {decimals} = document.getElementById('trackride-style').dataset;
     const plain = RegExp(`^-?\\d{1,12}(\\.\\d{1,${decimals}})?$`).test(number);
     const caret = box.selectionStart;
     set(box, box.defaultValue);
@@ -57,9 +66,7 @@ if (!document.body.dataset.trackride) {
       pass(box);
       box.setSelectionRange(caret, caret);
     } else {
-      const sign = document.querySelector(`[data-trackride="page"] ~ div:has(label[for="${typed}"]) input`);
-      set(sign, JSON.stringify([label(box).htmlFor, text, ++told]));
-      pass(sign);
+      tell('typed', JSON.stringify([label(box).htmlFor, text, ++told]));
     }
   };
   const on = (names, act) => names.split(' ').forEach((name) => document.addEventListener(name, (event) => {

@@ -145,6 +145,12 @@ class Actions(Protocol):
     def set_in_front(self, tabs: frozenset[str]) -> None:
         """Only the tabs that are seen keep up with a drag."""
 
+    def recollect(self, visit: str) -> None:
+        """Go on where the tab was before its page was loaded anew: `visit` is what it has stored.
+
+        "null": a new tab, which goes on where the browser was last.
+        """
+
     def prefer_dark(self, dark: bool) -> None:
         """The browser is set to this look."""
 

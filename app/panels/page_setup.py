@@ -26,7 +26,9 @@ class PageSigns(NamedTuple):
     in_view: viser.GuiCheckboxHandle  # ticked while the page is in view
     in_front: viser.GuiTextHandle  # names of the tabs in front, with commas between, once the page shows the panels
     night: viser.GuiCheckboxHandle  # ticked where the browser is set to dark pages
+    visit: viser.GuiTextHandle  # what this tab had stored when its page was loaded anew; "null": nothing
     typed: viser.GuiTextHandle  # JSON: viser's name of a box for numbers, what was typed there and is none, a count
+    store: viser.GuiHtmlHandle  # what runs there stores something in the tab
 
 
 def add_page(gui: viser.GuiApi) -> PageSigns:
@@ -38,18 +40,26 @@ def add_page(gui: viser.GuiApi) -> PageSigns:
     in_view = gui.add_checkbox("In view", True)
     in_front = gui.add_text("Tabs in front", "")
     night = gui.add_checkbox("Dark pages", False)
+    visit = gui.add_text("Visit", "")
     typed = gui.add_text("Typed", "")
+    store = gui.add_html("")
     rules = style(
         asset("page.css"),
         id="trackride-style",
         data_in_view=in_view._impl.uuid,
         data_night=night._impl.uuid,
+        data_visit=visit._impl.uuid,
         data_typed=typed._impl.uuid,
         data_decimals=str(PRECISION),
     )
     intro = element("p", INTRO, class_="trackride-intro")
     page.content = str(joined((running(asset("page.js")), intro, rules)))
-    return PageSigns(in_view, in_front, night, typed)
+    return PageSigns(in_view, in_front, night, visit, typed, store)
+
+
+def store_visit(signs: PageSigns, state: str) -> None:
+    """Have the tab store a text, which it tells when its page is loaded anew. Other tabs do not see it."""
+    signs.store.content = str(running("sessionStorage.setItem('trackride', this.dataset.state)", data_state=state))
 
 
 def add_hints(gui: viser.GuiApi) -> None:

@@ -77,7 +77,6 @@ class Session:
             raise
         self._workspace = Workspace(self._window, self._runner, self._presets)
         self._transfers = Transfers(client, self, self._window, self._workspace, run)
-        self._transfers.recollect()
         self._thread = threading.Thread(target=self._show, name="trackride-view", daemon=True)
         self._thread.start()
 
@@ -216,6 +215,9 @@ class Session:
 
     def set_dark(self, dark: bool) -> None:
         self.post("dark", lambda: self._workspace.set_dark(dark))
+
+    def recollect(self, visit: str) -> None:
+        self.post("visit", lambda: self._transfers.recollect(visit))
 
     def prefer_dark(self, dark: bool) -> None:
         self.post("preference", lambda: self._workspace.prefer_dark(dark))

@@ -20,7 +20,7 @@ from app.panels.controls import PRECISION
 from app.panels.files_panel import FilesPanel
 from app.panels.notifications import Notifications
 from app.panels.page_layout import LEFT, PageLayout, Screen
-from app.panels.page_setup import add_hints, add_page, apply_theme
+from app.panels.page_setup import add_hints, add_page, apply_theme, store_visit
 from app.panels.parameter_panel import ParameterPanel
 from app.panels.playback_panel import PlaybackPanel
 from app.panels.plot_panel import RUNS, PlotPanel
@@ -110,12 +110,13 @@ class Window:
             gui.set_panel_label("Trackride")
             gui.main_panel.dock_left()
             gui.main_panel.set_width(LEFT)
-            signs = add_page(gui)
+            self._signs = signs = add_page(gui)
             signs.in_view.on_update(by_user(lambda event: actions.set_in_view(event.target.value), actions.fail))
             signs.in_front.on_update(
                 by_user(lambda event: actions.set_in_front(frozenset(event.target.value.split(","))), actions.fail)
             )
             signs.night.on_update(by_user(lambda event: actions.prefer_dark(event.target.value), actions.fail))
+            signs.visit.on_update(by_user(lambda event: actions.recollect(event.target.value), actions.fail))
             signs.typed.on_update(
                 by_user(lambda event: self._controls.enter(*json.loads(event.target.value)[:2]), actions.fail)
             )
@@ -394,6 +395,10 @@ class Window:
     def edit_yaml(self, config: Config) -> None:
         """Open a configuration as text."""
         YamlWindow(self._client.gui, config, self._actions)
+
+    def store(self, state: str) -> None:
+        """Have the tab store a text until its page is loaded anew."""
+        store_visit(self._signs, state)
 
     def show_progress(self, doing: str) -> None:
         """Say what is being made for a download; empty: nothing."""
