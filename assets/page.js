@@ -1,9 +1,16 @@
 // What the page itself does: keys that leave the camera alone, hints where viser shows none, when a typed value counts,
-// and telling the server whether the page is in view and whether the browser is set to dark pages.
+// telling the server whether the page is in view and whether the browser is set to dark pages, its title, and what
+// happens when the server is lost.
 // Without it everything works and can be read, but typed values count key by key. `this` is the picture that runs this
 // script; the rules of page.css find the page and its panel by the names that they get here.
 this.parentElement.dataset.trackride = 'page';
 this.parentElement.parentElement.dataset.trackride = 'panel';
+// After a lost connection viser builds all anew in a page whose panels have their sizes already. The page is loaded
+// afresh instead: it comes back as it was, from what it has stored.
+{
+  const {inView} = document.getElementById('trackride-style').dataset;  // another one in each session
+  if ((document.body.dataset.session ??= inView) !== inView) location.reload();
+}
 // Hidden boxes of text, whose ids stand in the data of the style, carry what the page tells
 const set = (box, text) => {
   const kind = box instanceof HTMLTextAreaElement ? HTMLTextAreaElement : HTMLInputElement;
@@ -16,8 +23,18 @@ const tell = (name, text) => {
   set(sign, text);
   pass(sign);
 };
+// viser sends what is set in a page every 50 ms at most, and of what is set in between only the last: all that is told
+// to the server takes its turn, here and in plots.js
+window.trackrideInTurn ??= (() => {
+  let free = 0;
+  return (act) => {
+    const wait = Math.max(free - performance.now(), 0);
+    free = performance.now() + wait + 100;
+    setTimeout(act, wait);
+  };
+})();
 // A tab whose page is loaded anew goes on where it was, whatever other tabs of this browser have stored since
-setTimeout(() => tell('visit', sessionStorage.getItem('trackride') ?? 'null'));
+trackrideInTurn(() => tell('visit', sessionStorage.getItem('trackride') ?? 'null'));
 if (!document.body.dataset.trackride) {
   document.body.dataset.trackride = 'keys';
   // viser turns and moves the camera with some of our keys, wherever they are pressed, on a slider too
@@ -66,7 +83,7 @@ if (!document.body.dataset.trackride) {
       pass(box);
       box.setSelectionRange(caret, caret);
     } else {
-      tell('typed', JSON.stringify([label(box).htmlFor, text, ++told]));
+      trackrideInTurn(() => tell('typed', JSON.stringify([label(box).htmlFor, text, ++told])));
     }
   };
   const on = (names, act) => names.split(' ').forEach((name) => document.addEventListener(name, (event) => {
@@ -100,9 +117,23 @@ if (!document.body.dataset.trackride) {
     const box = document.getElementById(document.getElementById('trackride-style')?.dataset[name]);
     if (box && box.checked !== on) box.click();
   };
-  document.addEventListener('visibilitychange', () => tick('inView', !document.hidden));
+  const wish = () => trackrideInTurn(() => tick('night', night.matches));
+  document.addEventListener('visibilitychange', () => trackrideInTurn(() => tick('inView', !document.hidden)));
   const night = matchMedia('(prefers-color-scheme: dark)');
-  const wish = () => tick('night', night.matches);
   night.addEventListener('change', wish);
-  setTimeout(wish);
+  wish();
+  customElements.define('trackride-title', class extends HTMLElement {
+    connectedCallback() { document.title = this.getAttribute('of'); }
+  });
+  // While the server cannot be reached, viser dims all panels and takes no clicks; keys are left to us
+  const lost = () => document.querySelector('div[style*="opacity 150ms"][style*="pointer-events: none"]') !== null;
+  const word = Object.assign(document.createElement('div'), {className: 'trackride-lost', role: 'status', hidden: true});
+  word.textContent = 'Not connected: waiting for Trackride. Nothing can be changed until it answers.';
+  document.body.append(word);
+  setInterval(() => word.hidden = !lost(), 300);
+  document.documentElement.addEventListener('keydown', (event) => {
+    if (event.ctrlKey || event.metaKey || /^F\d/.test(event.key) || !lost()) return;
+    event.stopImmediatePropagation();
+    event.preventDefault();
+  }, true);
 }

@@ -9,7 +9,9 @@ import viser
 
 from app.format.assets import asset
 from app.format.markup import element, joined, running, style
+from app.format.parameters import choice_words
 from app.panels.controls import PRECISION
+from model.config.config import Config, SumRoad
 
 BRAND = (28, 108, 178)
 INTRO = "Move a slider: the run is computed anew. Ctrl+K: all keys."
@@ -29,6 +31,7 @@ class PageSigns(NamedTuple):
     visit: viser.GuiTextHandle  # what this tab had stored when its page was loaded anew; "null": nothing
     typed: viser.GuiTextHandle  # JSON: viser's name of a box for numbers, what was typed there and is none, a count
     store: viser.GuiHtmlHandle  # what runs there stores something in the tab
+    title: viser.GuiHtmlHandle  # see title_html
 
 
 def add_page(gui: viser.GuiApi) -> PageSigns:
@@ -36,6 +39,7 @@ def add_page(gui: viser.GuiApi) -> PageSigns:
 
     page.js sets all but the tabs in front, which plots.js writes.
     """
+    title = gui.add_html("")
     page = gui.add_html("")
     in_view = gui.add_checkbox("In view", True)
     in_front = gui.add_text("Tabs in front", "")
@@ -54,12 +58,19 @@ def add_page(gui: viser.GuiApi) -> PageSigns:
     )
     intro = element("p", INTRO, class_="trackride-intro")
     page.content = str(joined((running(asset("page.js")), intro, rules)))
-    return PageSigns(in_view, in_front, night, visit, typed, store)
+    return PageSigns(in_view, in_front, night, visit, typed, store, title)
 
 
 def store_visit(signs: PageSigns, state: str) -> None:
     """Have the tab store a text, which it tells when its page is loaded anew. Other tabs do not see it."""
     signs.store.content = str(running("sessionStorage.setItem('trackride', this.dataset.state)", data_state=state))
+
+
+def title_html(config: Config) -> str:
+    """HTML that names the browser's tab after vehicle and road."""
+    parts = config.road.parts if isinstance(config.road, SumRoad) else (config.road,)
+    road = " + ".join(choice_words(part.type) for part in parts)
+    return str(element("trackride-title", of=f"{config.name}, {road} · Trackride"))
 
 
 def add_hints(gui: viser.GuiApi) -> None:
