@@ -266,7 +266,9 @@ class Config(Section):
     def values(self) -> dict[str, Value]:
         """Everything a file must say to get this configuration, by dotted path, in the table's order."""
         values = {
-            parameter.key: self.value(parameter.key) for parameter in PARAMETERS if parameter.applies_to(self.road.type)
+            parameter.key: _FIELDS[parameter.key](self)
+            for parameter in PARAMETERS
+            if parameter.applies_to(self.road.type)
         }
         for one, others in EXCLUSIVE:
             if values[one] is not None:

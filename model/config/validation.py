@@ -295,7 +295,7 @@ def _contradictions(values: dict[str, Value], faulty: set[str]) -> Iterator[Faul
                 yield fault(other, f"{one} says the same; leave one of them out")
 
     def sound(key: str) -> bool:
-        return not any(key == path or key.startswith(f"{path}.") or not path for path in faulty)
+        return not faulty or not any(key == path or key.startswith(f"{path}.") or not path for path in faulty)
 
     road_type = values.get("road.type", PARAMETER["road.type"].default)
     for key in values:

@@ -27,8 +27,8 @@ from model.study.running import Spread, rows
 from model.study.table import Made, TableWriter
 from tests.benchmarks.model import cores
 
-RUNS = 60  # in a round
-ROUNDS = 5
+RUNS = 200  # in a round
+ROUNDS = 3
 MANY = 10_000
 ON_CLUSTER = 1000
 
