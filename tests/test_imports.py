@@ -19,7 +19,7 @@ PLACES = {
         *("model.simulation.dense", "model.simulation.extremes", "model.simulation.steppers"),
         *("app.plots.thinning", "app.view3d.track_belt"),
     },
-    "threading": {"app.session.session", "app.session.background", "app.runs.runner"},
+    "threading": {"app.server", "app.session.session", "app.session.background", "app.runs.runner"},
     "concurrent": {"model.simulation.batch"},
     "matplotlib": {"app.reports"},
     "trimesh": {"app.view3d.meshes.solids"},
