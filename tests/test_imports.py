@@ -19,7 +19,10 @@ PLACES = {
         *("model.simulation.dense", "model.simulation.extremes", "model.simulation.steppers"),
         *("app.plots.thinning", "app.view3d.track_belt"),
     },
-    "threading": {"app.server", "app.session.session", "app.session.background", "app.runs.runner"},
+    "threading": {
+        *("app.server", "app.session.session", "app.session.background"),
+        *("app.runs.runner", "app.runs.turns"),
+    },
     "concurrent": {"model.simulation.batch"},
     "matplotlib": {"app.reports"},
     "trimesh": {"app.view3d.meshes.solids"},

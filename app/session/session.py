@@ -21,6 +21,7 @@ from app.panels.road_parts import with_part, without_last
 from app.runs.playback import Playback
 from app.runs.request import Driven, Failed, Finished, Outcome, Refused, Request, Simulate, first_request
 from app.runs.runner import Runner
+from app.runs.turns import SHOWING
 from app.session.error_log import Seldom, kind_of
 from app.session.transfers import Download, Transfers
 from app.session.window import VehicleView, Window
@@ -319,10 +320,11 @@ class Session:
             with_text = now >= next_text
             if with_text:
                 next_text = now + 1 / TEXT_RATE
-            for outcome in self._runner.take():
-                self._stir()
-                self._attempt(partial(self._take, outcome))
-            self._attempt(partial(self._draw, elapsed, with_text))
+            with SHOWING.turn():
+                for outcome in self._runner.take():
+                    self._stir()
+                    self._attempt(partial(self._take, outcome))
+                self._attempt(partial(self._draw, elapsed, with_text))
             with self._lock:
                 rests = self._rests = self._told_at >= self._awake_until and not self._moves
             frame = 1 / (IDLE_RATE if rests else VIEW_RATE)
