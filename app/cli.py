@@ -5,9 +5,12 @@ The model and the viewer are imported inside the commands, so that `--help` answ
 
 from __future__ import annotations
 
+import os
 import signal
+import socket
 import sys
 import tempfile
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib import metadata
@@ -24,6 +27,7 @@ if TYPE_CHECKING:
     from model.simulation.trajectory import Trajectory
 
 BAD_INPUT, DIVERGED, CANCELLED = 2, 3, 130  # exit status
+STOPPING = 1.5  # s that the explorer has to close its tabs after Ctrl+C
 RUN_SUFFIXES, PAGE_SUFFIXES = (".npz", ".csv"), (".html",)
 
 cli = typer.Typer(
@@ -43,7 +47,7 @@ SetOption = Annotated[
 
 
 def main() -> None:
-    """Entry point of the `trackride` command."""
+    """Do what the command line says."""
     try:
         cli(prog_name="trackride")
     except OSError as error:  # of standard output: what writes files says so itself
@@ -94,16 +98,17 @@ def explore(
     start = _configuration(config, changes)
     from app.server import serve
 
-    serve(
-        start,
-        Path(config).name,
-        host=host,
-        port=port,
-        open_browser=browser,
-        max_tabs=max_tabs,
-        allowed_origins=allow_origin or (),
-        with_token=not no_token,
-    )
+    with _ending_soon():
+        serve(
+            start,
+            Path(config).name,
+            host=host,
+            port=port,
+            open_browser=browser,
+            max_tabs=max_tabs,
+            allowed_origins=allow_origin or (),
+            with_token=not no_token,
+        )
 
 
 @cli.command(epilog="Example: trackride run paper --set drive.speed_kmh=25 --out run.npz")
@@ -114,17 +119,20 @@ def run(
 ) -> None:
     """Run a configuration without a browser, and print its figures.
 
-    Exit status: 0 done; 2 bad input, nothing written; 3 diverged and 130 interrupted, the good part written.
+    Exit status: 0 done; 2 bad input, nothing written; 3 diverged and 130 interrupted, the good part written. A second
+    Ctrl+C ends at once, and nothing is written.
     """
     chosen = _configuration(config, changes)
     if out is not None:
         _check_writable(out, RUN_SUFFIXES)
-    trajectory = _simulated(chosen)
-    if out is not None:
-        with _writing(out):
-            trajectory.save(out)
+    _compile(chosen)
+    with _interrupt() as interrupted:
+        trajectory = _simulated(chosen, interrupted)
+        if out is not None:
+            with _writing(out):
+                trajectory.save(out)
     _report(trajectory)
-    _leave_unless_complete(trajectory, out)
+    _leave_unless_complete(trajectory, out, interrupted())
 
 
 @cli.command(epilog="Example: trackride show paper --set road.amplitude=0.05 > mine.yaml")
@@ -149,14 +157,16 @@ def report(
     """
     chosen = _configuration(config, changes)
     _check_writable(out, PAGE_SUFFIXES)
-    trajectory = _simulated(chosen)
+    _compile(chosen)
     from app.reports.run_report import report_page
     from model.files import write_whole
 
-    page = report_page(trajectory, config).encode()
-    with _writing(out):
-        write_whole(out, page)
-    _leave_unless_complete(trajectory, out)
+    with _interrupt() as interrupted:
+        trajectory = _simulated(chosen, interrupted)
+        page = report_page(trajectory, config).encode()
+        with _writing(out):
+            write_whole(out, page)
+    _leave_unless_complete(trajectory, out, interrupted())
     output.print(f"The report is in {out}.", markup=False, soft_wrap=True)
 
 
@@ -173,27 +183,32 @@ def paper(
     _check_folder(out)
     from app.reports.paper.links import record_texts
     from app.reports.paper.page import paper_files
+    from model.config.config import load_config
     from model.files import write_whole
     from model.paper.links import study_links
     from model.paper.study import StudyError, study_paper
 
-    with _progress("The paper's runs") as on_progress, _interrupt() as should_stop:
+    _compile(load_config("paper"))
+    with _interrupt() as interrupted:
 
-        def go_on(part: float) -> None:
+        def go_on(part: float, on_progress: Callable[[float], None] | None = None) -> None:
             if on_progress is not None:
                 on_progress(part)
-            if should_stop():
+            if interrupted():
                 _fail("Interrupted: nothing was written.", CANCELLED)
 
         try:
-            study = study_paper(lambda part: go_on(part / 2))
-            links = study_links(record_texts(), lambda part: go_on((1 + part) / 2))
+            with _progress("The paper's runs") as on_progress:
+                study = study_paper(lambda part: go_on(part / 2, on_progress))
+                links = study_links(record_texts(), lambda part: go_on((1 + part) / 2, on_progress))
         except StudyError as error:
             _fail(str(error), DIVERGED)
-    with _writing(out):
-        out.mkdir(parents=True, exist_ok=True)
-        for name, content in paper_files(study, links).items():
-            write_whole(out / name, content)
+        files = paper_files(study, links)
+        go_on(1.0)
+        with _writing(out):
+            out.mkdir(parents=True, exist_ok=True)
+            for name, content in files.items():
+                write_whole(out / name, content)
     output.print(f"The page is {out / 'index.html'}; its figures are beside it.", markup=False, soft_wrap=True)
 
 
@@ -243,14 +258,21 @@ def _configuration(source: str, changes: list[str] | None) -> Config:
     return config
 
 
-def _simulated(config: Config) -> Trajectory:
-    """The run, with a progress bar; Ctrl+C ends it early."""
+def _compile(config: Config) -> None:
+    """What its run needs, while Ctrl+C still ends the process at once: a compiler heeds no other way."""
+    from model.simulation.simulate import warm_up
+
+    warm_up(config.simulation.integrator)
+
+
+def _simulated(config: Config, interrupted: Callable[[], bool]) -> Trajectory:
+    """The run, with a progress bar, until it is interrupted."""
     from model import simulate
     from model.dynamics.equilibrium import NoEquilibriumError
 
     try:
-        with _progress(config.name) as on_progress, _interrupt() as should_stop:
-            return simulate(config, on_progress, should_stop)
+        with _progress(config.name) as on_progress:
+            return simulate(config, on_progress, interrupted)
     except NoEquilibriumError as error:
         _fail(str(error))
 
@@ -315,19 +337,51 @@ def _progress(name: str) -> Iterator[Callable[[float], None] | None]:
 
 @contextmanager
 def _interrupt() -> Iterator[Callable[[], bool]]:
-    """Ctrl+C asks for an end between chunks, so that the good part can be kept; a second one ends at once."""
+    """Ctrl+C is noted, so that the good part can be kept and a file finished; a second one ends at once."""
     asked = False
 
     def ask(number: int, frame: object) -> None:
         nonlocal asked
         asked = True
-        signal.signal(signal.SIGINT, before)
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
     before = signal.signal(signal.SIGINT, ask)
     try:
         yield lambda: asked
+    except KeyboardInterrupt:
+        _fail("Interrupted.", CANCELLED)
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+@contextmanager
+def _ending_soon() -> Iterator[None]:
+    """Ctrl+C raises KeyboardInterrupt, which has a short while to end what is done here; then the process is ended.
+
+    Code that is being loaded may lose the exception, and threads that compile are waited for.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        yield
+        return
+    told, tell = socket.socketpair()
+    tell.setblocking(False)
+    ended = threading.Event()
+
+    def watch() -> None:
+        while heard := told.recv(1):
+            if signal.SIGINT in heard and not ended.wait(STOPPING):
+                os._exit(0)
+
+    threading.Thread(target=watch, name="interrupt", daemon=True).start()
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.set_wakeup_fd(tell.fileno(), warn_on_full_buffer=False)  # told also while no Python code runs
+    try:
+        yield
+    finally:
+        signal.set_wakeup_fd(-1)
+        signal.signal(signal.SIGINT, before)
+        ended.set()
+        tell.close()
 
 
 def _report(trajectory: Trajectory) -> None:
@@ -372,13 +426,15 @@ def _figure_table(trajectory: Trajectory, of: Summary) -> Table:
     return table
 
 
-def _leave_unless_complete(trajectory: Trajectory, out: Path | None) -> None:
-    """Say how a run ended early, and leave with the status for it."""
+def _leave_unless_complete(trajectory: Trajectory, out: Path | None, interrupted: bool) -> None:
+    """Say how a run ended early, or that only what came after it was interrupted, and leave with the status for it."""
     if trajectory.complete:
+        if interrupted:
+            _fail("Interrupted when the run was complete.", CANCELLED)
         return
     _say(f"The run ended early: {trajectory.status}.", style="red")
     if trajectory.advice:
         _say(trajectory.advice)
     if out is not None:
         _say(f"The good part, up to t = {trajectory.t[-1]:g} s, is in {out}.")
-    raise typer.Exit(CANCELLED if trajectory.status == "cancelled" else DIVERGED)
+    raise typer.Exit(CANCELLED if interrupted else DIVERGED)

@@ -123,6 +123,58 @@ if (!window.trackridePlots) {
     chart.series.forEach((curve) => curve.alpha = k === undefined || curve.label === kept ? 1 : PALE);
     chart.redraw(false, false);
   };
+  // The largest value of a curve during the motion is a dot, also where no point of the curve reaches it: the axis does.
+  const peaks = {};  // [name, time, value] of each peak, by the unit of its chart
+  const peaksOf = (chart) => {  // with the number of the curve, those in view
+    if (chart.cursor.sync.key !== TIME) return [];
+    const {min, max} = chart.series[0];  // of the points in view
+    return (peaks[chart.axes[1].label] ?? []).flatMap(([name, time, value]) => {
+      const k = chart.series.findIndex((curve) => isRun(curve) && curve.label === name);
+      return k > 0 && chart.series[k].show && min <= time && time <= max ? [{k, time, value}] : [];
+    });
+  };
+  const reachPeaks = (chart) => {
+    const {range} = chart.scales.y;
+    chart.scales.y.range = (it, low, high, key) => {
+      const values = peaksOf(it).map(({value}) => value);
+      return values.length ? range(it, Math.min(low, ...values), Math.max(high, ...values), key) : range(it, low, high, key);
+    };
+  };
+  const drawPeaks = (chart) => {
+    const {ctx} = chart, px = devicePixelRatio, marked = peaksOf(chart);
+    const place = ({time, value}) => [chart.valToPos(time, 'x', true), chart.valToPos(value, 'y', true)];
+    const paint = (colour, draw) => { ctx.fillStyle = colour; draw(); };
+    chart.peaks = JSON.stringify(peaks[chart.axes[1].label]);
+    ctx.save();
+    marked.forEach((peak) => paint(chart.series[peak.k].stroke(chart, peak.k), () => {
+      ctx.beginPath();
+      ctx.arc(...place(peak), 2.5 * px, 0, 2 * Math.PI);
+      ctx.fill();
+    }));
+    // The number of the largest that is not pale, beyond it, on a patch of the page's colour
+    const clear = marked.filter(({k}) => isClear(chart, k));
+    if (clear.length) {
+      const most = clear.reduce((a, b) => Math.abs(b.value) > Math.abs(a.value) ? b : a), [x, y] = place(most);
+      const {left, top, width, height} = chart.bbox, beyond = y + (most.value < 0 ? 10 : -10) * px;
+      const text = `${most.value.toFixed(1)} ${chart.axes[1].label}`.replace('-', '−');
+      ctx.font = `${11 * px}px system-ui, sans-serif`;
+      [ctx.textAlign, ctx.textBaseline, ctx.lineJoin] = ['left', 'middle', 'round'];
+      const at = [
+        Math.min(x - 3 * px, left + width - ctx.measureText(text).width),
+        Math.min(Math.max(beyond, top + 6 * px), top + height - 6 * px),
+      ];
+      [ctx.strokeStyle, ctx.lineWidth] = [getComputedStyle(document.body).backgroundColor, 3 * px];
+      ctx.strokeText(text, ...at);
+      paint(chart.axes[1].stroke(chart, 1), () => ctx.fillText(text, ...at));
+    }
+    ctx.restore();
+  };
+  // A chart is made 0 px wide. If it gets its width while it is being drawn, it may overlook the axis of time, which then
+  // has neither numbers nor lines until the width changes: it is told again.
+  const layOut = (chart) => {
+    const {width, height} = chart;
+    if (width > 0 && !chart.axes[0]._values) chart.setSize({width, height});
+  };
   const meet = (chart) => {
     met.add(chart);
     chart.root.classList.add(chart.cursor.sync.key);
@@ -136,6 +188,7 @@ if (!window.trackridePlots) {
     });
     chart.series.forEach((_, k) => thicken(chart, k));
     notePicked(chart);
+    reachPeaks(chart);
     chart.series.forEach((curve) => curve.value = valueOf);
     hide(chart);
     chart.redraw();  // with lines as thick as they are to be, also where no other run comes
@@ -149,11 +202,13 @@ if (!window.trackridePlots) {
       const [first, last] = ends(chart), {min, max} = chart.scales.x, shared = groupOf(chart);
       const drawn = last > first && max > min && inView.has(chart);
       drawInFront(chart);
+      drawPeaks(chart);
       if (drawn) shared.zoom = [(min - first) / (last - first), (max - first) / (last - first)];
       point(chart);
       frame(chart);
       drawMaps();
       requestAnimationFrame(() => read(chart));
+      queueMicrotask(() => layOut(chart));
     });
     chart.over.addEventListener('mouseleave', () => setTimeout(window.trackridePlots, 0));
   };
@@ -164,6 +219,7 @@ if (!window.trackridePlots) {
       if (!seen(chart)) return inView.delete(chart);
       if (!met.has(chart)) meet(chart);
       if (!inView.has(chart)) zoom(chart);
+      layOut(chart);
       inView.add(chart);
       point(chart);
       frame(chart);
@@ -242,6 +298,15 @@ if (!window.trackridePlots) {
       group(this.getAttribute('for')).marks = marks;
       if (marks[0]?.[1] === '') now = marks[0][0];
       window.trackridePlots();
+    }
+  });
+
+  customElements.define('trackride-peaks', class extends HTMLElement {
+    connectedCallback() {
+      Object.assign(peaks, JSON.parse(this.getAttribute('at')));
+      requestAnimationFrame(() => charts().forEach((chart) => {  // those whose curves came before
+        if (inView.has(chart) && chart.peaks !== JSON.stringify(peaks[chart.axes[1].label])) chart.redraw();
+      }));
     }
   });
 

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import os
+import resource
+import signal
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +16,28 @@ from xdist.scheduler import LoadScopeScheduling
 # Read when NumPy is first imported: its threads make small matrices on a busy machine several times slower.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+# Whoever starts the tests in the background has their children ignore interrupts, some of which must end by one.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
 REFERENCE = Path(__file__).parent / "reference"
 REFERENCE_CASES = sorted(path.stem for path in REFERENCE.glob("*.yaml"))
+
+
+@pytest.fixture
+def full_disk() -> Callable[[], AbstractContextManager[None]]:
+    """While it is entered, no file can grow beyond 4 kB."""
+
+    @contextmanager
+    def limited() -> Iterator[None]:
+        before = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (4096, before[1]))
+        try:
+            yield
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+    return limited
 
 
 class BrowserApart(LoadScopeScheduling):

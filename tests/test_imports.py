@@ -20,7 +20,7 @@ PLACES = {
         *("app.plots.thinning", "app.view3d.track_belt"),
     },
     "threading": {
-        *("app.server", "app.session.session", "app.session.background"),
+        *("app.cli", "app.server", "app.session.session", "app.session.background"),
         *("app.runs.runner", "app.runs.turns"),
     },
     "concurrent": {"model.simulation.batch"},

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from io import BytesIO
 from typing import Any
-from zipfile import BadZipFile, ZipFile
 
 from model.config.config import SIZE_LIMIT, Config, ConfigError, Fault, ProfileRoad, parse_config
 from model.config.profile_files import read_profile_file
@@ -13,7 +12,7 @@ from model.road.road import RAMP_AHEAD
 from model.simulation.trajectory import Trajectory
 
 RUN_LIMIT = 100e6  # bytes of a run's file…
-UNPACKED_LIMIT = 500e6  # … and of what is in it
+UNPACKED_LIMIT = 500e6  # … and of the arrays in it
 
 
 def configuration(name: str, content: bytes) -> Config:
@@ -50,14 +49,4 @@ def run_from(name: str, content: bytes) -> Trajectory:
     """The run in a .npz file. Raises ValueError (the message says why), or ConfigError for its configuration."""
     if len(content) > RUN_LIMIT:
         raise ValueError(f"{name} is larger than {RUN_LIMIT / 1e6:.0f} MB.")
-    try:
-        with ZipFile(BytesIO(content)) as archive:
-            unpacked = sum(entry.file_size for entry in archive.infolist())
-        if unpacked > UNPACKED_LIMIT:
-            raise ValueError(f"{name} holds more than {UNPACKED_LIMIT / 1e6:.0f} MB.")
-        run = Trajectory.load(BytesIO(content), name)
-    except (BadZipFile, MemoryError, OSError) as error:
-        raise ValueError(f"{name} is not a run: give a file saved with NPZ here, or by trackride run --out.") from error
-    if not len(run.t):
-        raise ValueError(f"{name} holds a run without any sample.")
-    return run
+    return Trajectory.load(BytesIO(content), name, largest=UNPACKED_LIMIT)

@@ -9,6 +9,8 @@ import viser
 
 from app.format.assets import asset
 from app.format.markup import element, joined, running, style
+from app.format.parameters import choice_words
+from model.config.config import Config, SumRoad
 
 BRAND = (28, 108, 178)
 INTRO = "Move a slider: the run is computed anew. Ctrl+K: all keys."
@@ -25,6 +27,7 @@ class PageSigns(NamedTuple):
     in_view: viser.GuiCheckboxHandle  # ticked while the page is in view
     in_front: viser.GuiTextHandle  # names of the tabs in front, with commas between, once the page shows the panels
     night: viser.GuiCheckboxHandle  # ticked where the browser is set to dark pages
+    title: viser.GuiHtmlHandle  # see title_html
 
 
 def add_page(gui: viser.GuiApi) -> PageSigns:
@@ -32,6 +35,7 @@ def add_page(gui: viser.GuiApi) -> PageSigns:
 
     page.js sets the two checkboxes, plots.js writes which tabs are in front.
     """
+    title = gui.add_html("")
     page = gui.add_html("")
     in_view = gui.add_checkbox("In view", True)
     in_front = gui.add_text("Tabs in front", "")
@@ -39,7 +43,14 @@ def add_page(gui: viser.GuiApi) -> PageSigns:
     rules = style(asset("page.css"), id="trackride-style", data_in_view=in_view._impl.uuid, data_night=night._impl.uuid)
     intro = element("p", INTRO, class_="trackride-intro")
     page.content = str(joined((running(asset("page.js")), intro, rules)))
-    return PageSigns(in_view, in_front, night)
+    return PageSigns(in_view, in_front, night, title)
+
+
+def title_html(config: Config) -> str:
+    """HTML that names the browser's tab after vehicle and road."""
+    parts = config.road.parts if isinstance(config.road, SumRoad) else (config.road,)
+    road = " + ".join(choice_words(part.type) for part in parts)
+    return str(element("trackride-title", of=f"{config.name}, {road} · Trackride"))
 
 
 def add_hints(gui: viser.GuiApi) -> None:

@@ -9,6 +9,7 @@ import viser
 from viser import _messages as messages
 
 from app.panels.page_layout import AXIS_NAME
+from app.panels.plot_page import OTHER_KEY, TIME_KEY, peaks_html
 from app.plots.curves import TIME, Curve, Plot
 
 FONT = "11px system-ui, sans-serif"
@@ -21,7 +22,6 @@ GRID = "#80808030"  # on light ground and on dark
 TICKS: viser.uplot.Axis_Ticks = {"size": 4, "width": 1}
 NUDGE = 1e-9  # s. A chart overlooks a new size that comes with new data; it lays out its axes when the range changes
 PADDING = (12, 18, 0, 0)  # px; less on top would cut the highest tick's label
-TIME_KEY, OTHER_KEY = "trackride-time", "trackride-frequency"  # charts with the same key share cursor and zoom
 
 
 class Charts:
@@ -33,13 +33,15 @@ class Charts:
         self._charts: list[viser.GuiUplotHandle] = []
         self._height = 0
         self._nudge = 0.0
+        with container:
+            self._peaks = gui.add_html("")
 
     def show(self, plots: tuple[Plot, ...], height: int) -> None:
         """Show these plots, each of this height, px. Charts are made anew only when there are other curves."""
-        shapes = [[(curve.label, curve.kind) for curve in plot.curves] + [plot.title] for plot in plots]
-        before = [[(curve.label, curve.kind) for curve in plot.curves] + [plot.title] for plot in self._plots]
+        shapes, before = _shapes(plots), _shapes(self._plots)
         restyled = [plot.curves for plot in plots] != [plot.curves for plot in self._plots]
         self._plots = plots
+        self._peaks.content = peaks_html(plots)  # before the curves: they are drawn with their peaks
         if shapes != before:
             self._height = height
             self._make()
@@ -69,7 +71,7 @@ class Charts:
         named: viser.uplot.Axis = {"labelFont": FONT, "labelSize": AXIS_NAME, "labelGap": 0}
         along, upright = axis | {"size": 24}, axis | named | {"size": 40, "space": 18, "label": plot.unit}
         kinds = {curve.kind for curve in plot.curves}
-        key = [words for kind, words in KEY.items() if kind in kinds]
+        key = [words for kind, words in KEY.items() if kind in kinds] + [plot.note] * bool(plot.note)
         return self._gui.add_uplot(
             plot.data,
             _series(plot),
@@ -88,6 +90,11 @@ class Charts:
             height=self._height + (AXIS_NAME if with_axis else 0),
             padding=PADDING,
         )
+
+
+def _shapes(plots: tuple[Plot, ...]) -> list[tuple[object, ...]]:
+    """What a chart cannot change once it is made."""
+    return [(plot.title, plot.note, *((curve.label, curve.kind) for curve in plot.curves)) for plot in plots]
 
 
 def _send(chart: viser.GuiUplotHandle, data: tuple[np.ndarray, ...]) -> None:

@@ -9,10 +9,12 @@ import json
 
 from app.format.assets import asset
 from app.format.markup import element, joined, running, style
-from app.panels.plot_charts import OTHER_KEY, TIME_KEY
+from app.plots.curves import Plot
 from app.plots.spectrum import Mark
 from model.analysis.signals import window
 from model.simulation.trajectory import Trajectory
+
+TIME_KEY, OTHER_KEY = "trackride-time", "trackride-frequency"  # charts with the same key share cursor and zoom
 
 
 def plot_page() -> str:
@@ -38,6 +40,14 @@ def window_html(run: Trajectory) -> str:
     whole = (taken.start, taken.end) == (run.t[0], run.t[-1])
     span = None if whole else (round(taken.start, 4), round(taken.end, 4))
     return str(element("trackride-span", at=json.dumps(span)))
+
+
+def peaks_html(plots: tuple[Plot, ...]) -> str:
+    """HTML that marks the peaks of curves: [name, time, value] of each, by the unit of its plot."""
+    peaks: dict[str, list[tuple[str, float, float]]] = {plot.unit: [] for plot in plots}
+    for plot in plots:
+        peaks[plot.unit] += [(plot.curves[peak.curve].label, peak.time, peak.value) for peak in plot.peaks]
+    return str(element("trackride-peaks", at=json.dumps(peaks, ensure_ascii=False)))
 
 
 def marks_html(marks: tuple[Mark, ...]) -> str:

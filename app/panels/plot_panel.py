@@ -215,8 +215,8 @@ class PlotPanel:
         self._client.flush()
 
     def _show_comfort(self, run: Trajectory) -> None:
-        self._headline.content = comfort_headline(run)
-        self._comfort.content = comfort_page(run, self._baseline)
+        self._headline.content = comfort_headline(run, self._driving)
+        self._comfort.content = comfort_page(run, self._baseline, self._driving)
 
     def _show_spectrum(self, run: Trajectory) -> None:
         colour = wheel_palette(1, 0, self._dark).hull

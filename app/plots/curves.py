@@ -16,6 +16,7 @@ from model.analysis.ride import imaginary_shares
 from model.simulation.trajectory import Trajectory
 
 DECIMALS = 2  # of the values that are plotted; the page shows no more (plots.js)
+OTHER_SIZE = 10.0  # times the weight on a wheel, from which on loads of two vehicles share no axis
 TIME = "Time, s"
 
 
@@ -31,6 +32,15 @@ class Curve:
 
 
 @dataclass(frozen=True)
+class Peak:
+    """The largest value of a curve of the run, which may lie between its samples."""
+
+    curve: int  # its number in the plot
+    time: float  # s
+    value: float  # in the plot's unit
+
+
+@dataclass(frozen=True)
 class Plot:
     """Curves over one axis."""
 
@@ -41,6 +51,8 @@ class Plot:
     x: np.ndarray = field(compare=False)  # (K,) rising, in the axis's unit
     values: np.ndarray = field(compare=False)  # (K, curves), in the unit; NaN where a baseline has ended
     axis: str = TIME
+    peaks: tuple[Peak, ...] = field(default=(), compare=False)
+    note: str = ""  # said beside the title
 
     @property
     def data(self) -> tuple[np.ndarray, ...]:
@@ -55,13 +67,15 @@ def load_plots(
 ) -> tuple[Plot, ...]:
     """Normal load of road wheels and of imaginary wheels, in the vehicle's unit, and the imaginary ones' share, %.
 
-    A baseline adds its curves, one for each wheel that the run has too. A wheel that is singled out leaves the others
-    faded. A dotted line marks the load at rest: of that wheel, or the wheels' mean. A vehicle without imaginary wheels
-    has no plots of theirs.
+    A baseline adds its curves, one for each wheel that the run has too; a note says where it is of another size (see
+    `beside_loads`). A wheel that is singled out leaves the others faded. A dotted line marks the load at rest: of that
+    wheel, or the wheels' mean. A vehicle without imaginary wheels has no plots of theirs. Each wheel's largest load
+    during the motion is a peak of its curve.
     """
     n, m = run.system.n, run.system.m
     unit = load_unit(run.system)
-    wheel_weight = float(run.system.weight.sum()) / (n + m)
+    beside = beside_loads(run, baseline)
+    note = "" if beside is baseline else "baseline: other size"
     families = [("Normal load of road wheels", wheel_curves("R", palette.road, 0, wheel), partial(_road_loads, unit))]
     if m:
         imaginary = wheel_curves("I", palette.imaginary, n, wheel)
@@ -70,12 +84,14 @@ def load_plots(
         time_plot(
             title,
             unit.name,
-            (0.0, wheel_weight / unit.newtons),
+            (0.0, _wheel_weight(run) / unit.newtons),
             curves,
             values,
             run,
-            baseline,
+            beside,
             at_rest=_at_rest(run, unit, curves, palette.hull),
+            peaks=_load_peaks(unit, run, curves),
+            note=note,
         )
         for title, curves, values in families
     ]
@@ -83,6 +99,18 @@ def load_plots(
         share = [Curve("Share", palette.hull)]
         plots += [time_plot("Load carried by imaginary wheels", "%", (0.0, 1.0), share, _share, run, baseline)]
     return tuple(plots)
+
+
+def beside_loads(run: Trajectory, baseline: Trajectory | None) -> Trajectory | None:
+    """The baseline, unless its vehicle is so much heavier or lighter that loads of one of both would lie flat."""
+    if baseline is None or not 1 / OTHER_SIZE < _wheel_weight(baseline) / _wheel_weight(run) < OTHER_SIZE:
+        return None
+    return baseline
+
+
+def _wheel_weight(run: Trajectory) -> float:
+    """N, of an even share of the weight on each wheel."""
+    return float(run.system.weight.sum()) / (run.system.n + run.system.m)
 
 
 def wheel_curves(letter: str, colours: Sequence[str], first: int, single: int | None) -> list[Curve]:
@@ -102,8 +130,13 @@ def time_plot(
     run: Trajectory,
     baseline: Trajectory | None = None,
     at_rest: tuple[float, Curve] | None = None,
+    peaks: Sequence[tuple[float, float]] = (),
+    note: str = "",
 ) -> Plot:
-    """A plot over time. values: run -> (N, C), a column for each curve; at_rest: a dotted line and its height."""
+    """A plot over time. values: run -> (N, C), a column for each curve; at_rest: a dotted line and its height.
+
+    peaks: time and value of each curve's peak, in the curves' order; those outside of the run's samples are left out.
+    """
     shown = values(run)
     columns, finite = [shown], np.isfinite(shown)
     if baseline is not None and len(baseline.t):
@@ -122,7 +155,12 @@ def time_plot(
         height, line = at_rest
         curves = [*curves, line]
         thinned = np.vstack([thinned.T, np.full(len(time), height)]).T
-    return Plot(title, unit, tuple(curves), least, time, np.round(thinned, DECIMALS))
+    marked = tuple(
+        Peak(k, float(at), round(float(value), DECIMALS))
+        for k, (at, value) in enumerate(peaks)
+        if len(time) and time[0] <= at <= time[-1]
+    )
+    return Plot(title, unit, tuple(curves), least, time, np.round(thinned, DECIMALS), peaks=marked, note=note)
 
 
 def at_times(t: np.ndarray, own: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -150,6 +188,14 @@ def _road_loads(unit: LoadUnit, run: Trajectory) -> np.ndarray:
 def _other_loads(unit: LoadUnit, run: Trajectory) -> np.ndarray:
     """(N, m)."""
     return unit.of(run.normal_load[:, run.system.n :])
+
+
+def _load_peaks(unit: LoadUnit, run: Trajectory, curves: Sequence[Curve]) -> list[tuple[float, float]]:
+    """Time and value of each wheel's largest load."""
+    if not len(run.t):
+        return []
+    wheels = [curve.wheel for curve in curves if curve.wheel is not None]
+    return list(zip(run.peaks.load_time[wheels], unit.of(run.peaks.load[wheels]), strict=True))
 
 
 def _share(run: Trajectory) -> np.ndarray:

@@ -20,7 +20,16 @@ def ride_plots(
     hull = [Curve("Hull", palette.hull)]
     road = wheel_curves("R", palette.road, 0, wheel if wheel is not None and wheel < run.system.n else None)
     return (
-        time_plot("Vertical acceleration of the hull", "m/s²", (-0.5, 0.5), hull, _acceleration, run, baseline),
+        time_plot(
+            "Vertical acceleration of the hull",
+            "m/s²",
+            (-0.5, 0.5),
+            hull,
+            _acceleration,
+            run,
+            baseline,
+            peaks=_acceleration_peak(run),
+        ),
         time_plot("Pitch of the hull, nose up positive", "degrees", (-0.5, 0.5), hull, _pitch, run, baseline),
         time_plot("Speed", "km/h", None, hull, _speed, run, baseline),
         time_plot("Suspension travel, up positive", "mm", (-5.0, 5.0), road, _travel, run, baseline),
@@ -30,6 +39,17 @@ def ride_plots(
 def _acceleration(run: Trajectory) -> np.ndarray:
     """(N, 1), m/s²."""
     return run.a[:, run.system.chassis, 1:2]
+
+
+def _acceleration_peak(run: Trajectory) -> list[tuple[float, float]]:
+    """Time and value of the largest acceleration; it has the sign of the larger of the samples on both sides of it."""
+    if not len(run.t):
+        return []
+    time, size = float(run.peaks.acceleration_time), float(run.peaks.acceleration)
+    after = int(np.searchsorted(run.t, time))
+    beside = _acceleration(run)[max(after - 1, 0) : after + 1, 0]
+    larger = beside[np.abs(beside).argmax()] if len(beside) else 1.0
+    return [(time, float(np.copysign(size, larger)))]
 
 
 def _pitch(run: Trajectory) -> np.ndarray:

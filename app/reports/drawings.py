@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from app.format.colours import Palette, wheel_palette
-from app.plots.curves import Curve, Plot
+from app.plots.curves import Curve, Peak, Plot
 from model.dynamics.vehicle import System
 
 DPI = 200  # of a PNG
@@ -20,6 +20,7 @@ WIDTH, HEIGHT = 9.6, 2.6  # inches, of a plot on a page
 LEFT, RIGHT, ABOVE, BELOW = 0.5, 0.12, 0.32, 0.5  # inches around a plot, for its numbers and names
 HEADROOM = 0.11  # of a plot's height, for the name of a mark
 SMALL = 8.5  # points
+NUMBER_ROOM = 0.15  # of a plot's height, above and below its curves, for the number of a peak
 NAMES = 0.6  # of a plot's width that its curves' names may take
 
 
@@ -154,11 +155,28 @@ def mark(axes: Axes, name: str, x: float, look: Look, row: int = 0) -> None:
     )  # fmt: skip
 
 
+def mark_peaks(
+    axes: Axes, peaks: Sequence[tuple[Peak, str]], look: Look, dot: float = 4.0, letters: float = SMALL
+) -> None:
+    """A dot at each curve's peak, of this colour, and the number of the largest; sizes of dot and letters: points."""
+    for peak, colour in peaks:
+        axes.plot([peak.time], [peak.value], "o", color=colour, ms=dot, mew=0, zorder=3)
+    if peaks:
+        axes.margins(y=NUMBER_ROOM)
+        most = max((peak for peak, _ in peaks), key=lambda peak: abs(peak.value))
+        axes.annotate(
+            f"{most.value:.1f}".replace("-", "−"), (most.time, most.value), textcoords="offset points",
+            xytext=(0, (-0.4 if most.value < 0 else 0.4) * dot), va="top" if most.value < 0 else "bottom", ha="center",
+            fontsize=letters, color=look.ink, zorder=3.1,
+        )  # fmt: skip
+
+
 def draw_plot(axes: Axes, plot: Plot, look: Look) -> None:
     """One plot of the explorer: its curves over its axis, their names in their colours beside the title."""
     plain_axes(axes, look, f"{plot.title}, {plot.unit}", plot.axis)
     for curve, values in zip(plot.curves, plot.values.T, strict=True):
         axes.plot(plot.x, values, color=curve.colour, lw=1.1, ls=(0, (1, 1.6)) if curve.kind == "static" else "-")
+    mark_peaks(axes, [(peak, plot.curves[peak.curve].colour) for peak in plot.peaks], look)
     if plot.least is not None:
         low, high = axes.get_ylim()
         axes.set_ylim(min(low, plot.least[0]), max(high, plot.least[1]))

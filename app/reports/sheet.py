@@ -12,7 +12,9 @@ from PIL import Image
 
 from app.format.colours import Palette, wheel_palette
 from app.format.load_unit import LoadUnit, comparison_rows, load_unit
-from app.reports.drawings import AxesStyle, file_of, plain_axes, stamp
+from app.plots.curves import beside_loads, load_plots
+from app.plots.ride import ride_plots
+from app.reports.drawings import AxesStyle, file_of, mark_peaks, plain_axes, stamp
 from app.reports.sheet_page import ALARM, GREY, HEIGHT, INK, LOOK, MARGIN, WIDTH, Sheet, plain
 from app.reports.sheet_tables import Tables
 from app.reports.side_view import draw_side_view, highest_load
@@ -120,16 +122,24 @@ def _plots(
         (f"Normal load of road wheels, {unit.name}", names[:n], palette.road),
     ]
     plots = [plot for plot in plots if plot[1]]
+    peaks = {
+        plot.curves[peak.curve].label: peak
+        for plot in (*load_plots(trajectory, palette), *ride_plots(trajectory, palette))
+        for peak in plot.peaks
+    }
     foot, between, indent = BOTTOM + 0.26, 0.3, 0.4
     height = (TOP - PICTURE - 0.32 - foot - between * (len(plots) - 1)) / len(plots)
     for k, (title, labels, colours) in enumerate(plots):
         axes = sheet.axes(MARGIN + indent, foot + k * (height + between), LEFT - indent, height)
-        if baseline is not None:
-            _draw(axes, baseline, unit, labels, colours, lw=0.7, alpha=0.5, dashes=(3, 1.5))
+        other = baseline if labels == [HULL] else beside_loads(trajectory, baseline)
+        if other is not None:
+            _draw(axes, other, unit, labels, colours, lw=0.7, alpha=0.5, dashes=(3, 1.5))
         _draw(axes, trajectory, unit, labels, colours, lw=0.8)
+        axes.margins(y=0.06)
+        marked = [(peaks[label], colour) for label, colour in zip(labels, colours, strict=True) if label in peaks]
+        mark_peaks(axes, marked, LOOK, 2.5, STYLE.numbers)
         plain_axes(axes, LOOK, title, "Time, s" if k == 0 else "", style=STYLE)
         axes.set_xlim(0, max(float(trajectory.t[-1]), 1e-3))
-        axes.margins(y=0.06)
         if time is not None:
             axes.axvline(time, color=GREY, lw=0.7, ls=(0, (1, 1.5)))
         if len(labels) > 1:

@@ -8,12 +8,12 @@ from app.format.differences import change_text, row_texts
 from app.format.load_unit import heading
 from app.format.parameters import value_text
 from app.reports.sheet_page import BAND, GREY, MARKED, Sheet, plain
-from model.analysis.figures import AIR_TIME, DOSE, LOAD_PEAK, LOAD_RMS, SHOCK, TRANSIENT, TRAVEL, Row
+from model.analysis.figures import AIR_TIME, LOAD_PEAK, LOAD_RMS, TRAVEL, Row
 from model.analysis.signals import Window
 from model.config.config import Config
 from model.config.parameters import NOTES, PARAMETER, Parameter
 
-ROW = 0.142  # inches, like all lengths: height of a row, at most
+ROW = 0.132  # inches, like all lengths: height of a row, at most
 LEAST_ROW = 0.125  # below which wheels are left out of the tables instead
 HEADINGS = 0.9  # height of what stands above and between the rows
 POINTS_PER_ROW = 48.0  # size of text for each inch of a row's height
@@ -22,8 +22,7 @@ RIDE = 0.35  # width of the word "Ride"
 NAMES = 0.3  # width of the wheels' names
 MOST = 999.0  # %: a larger change is not told in figures
 WHEEL_FIGURES = (LOAD_PEAK, LOAD_RMS, TRAVEL, AIR_TIME)  # for which there is room
-LEFT_OUT = {figure.label for figure in (SHOCK, DOSE, TRANSIENT)}  # for which there is none
-GAP = 0.2  # between the two columns of parameters
+COLUMNS, GAP = 3, 0.1  # of the unchanged parameters, and between them
 
 
 class Tables:
@@ -38,7 +37,7 @@ class Tables:
     ) -> None:
         """rows: the comparison of two runs, or of one with none; taken: the window of the run that is shown; colours:
         CSS, by the names of its wheels."""
-        hull = [row for row in rows if not row.wheel and row.figure not in LEFT_OUT]
+        hull = [row for row in rows if not row.wheel]
         wheels = {(row.figure, row.wheel): row for row in rows if row.wheel}
         reference = baseline or Config()
         values, before = config.values(), reference.values()
@@ -46,7 +45,7 @@ class Tables:
         changed = [key for key in shown if before.get(key) != values[key]]
         same = [key for key in shown if key not in changed]
         names = list(dict.fromkeys(name for _, name in wheels))
-        others = len(hull) + len(changed) + -(-len(same) // 2)
+        others = len(hull) + len(changed) + -(-len(same) // COLUMNS)
         told = names if (others + len(names)) * LEAST_ROW <= self._height - HEADINGS else telling(names, wheels)
         lines = others + len(told) + (len(told) < len(names))
         self._row = min(ROW, (self._height - HEADINGS) / lines)
@@ -139,16 +138,17 @@ class Tables:
             self._cell(self._x + self._width - 0.02, plain(f"was {was}", 26), ha="right")
 
     def _other_rows(self, parameters: list[tuple[Parameter, Any]]) -> None:
-        """In two columns."""
+        """In columns."""
         self._y -= 0.03
-        top, width = self._y, (self._width - GAP) / 2
-        half = -(-len(parameters) // 2)
-        for column, part in enumerate((parameters[:half], parameters[half:])):
+        top, width = self._y, (self._width - GAP * (COLUMNS - 1)) / COLUMNS
+        high = -(-len(parameters) // COLUMNS)
+        for column in range(COLUMNS):
+            part = parameters[column * high : (column + 1) * high]
             self._y, x = top, self._x + column * (width + GAP)
             for number, (parameter, value) in enumerate(part):
                 self._next(BAND if number % 2 == 0 else "", x, width)
                 self._cell(x + 0.02, _named(parameter))
-                self._cell(x + width - 0.02, plain(value_text(parameter, value), 24), ha="right")
+                self._cell(x + width - 0.02, plain(value_text(parameter, value), 14), ha="right")
 
 
 def telling(names: list[str], rows: dict[tuple[str, str], Row]) -> list[str]:

@@ -4,9 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from model.config.config import ProfileRoad, SumRoad
+from model.simulation.trajectory import Trajectory
+
 SPEEDS = {f"1/{n}×": 1 / n for n in (8, 4, 2)} | {f"{n}×": float(n) for n in (1, 2, 4, 8)}
 NORMAL_SPEED = "1×"
 STEP = 0.01  # s
+AHEAD = 0.3  # m that the first wheel is before an obstacle when the user is brought there
 
 
 @dataclass
@@ -49,3 +55,27 @@ class Playback:
         at_present = self.playing or self.time >= self.end
         self.start, self.end = start, end
         self.time = end if at_present else min(max(self.time, start), end)
+
+
+def time_to_look(run: Trajectory, before: Trajectory, time: float) -> float:
+    """When to look at a run that comes while `time`, s, of the one before it is looked at.
+
+    That time again, unless there are other obstacles or waves and the vehicle has left them behind by then: there it
+    would stand on level road. Then just before the first wheel comes to them.
+    """
+    uneven = run.road.uneven if len(run.t) and _shapes(run) != _shapes(before) else None
+    if uneven is None:
+        return time
+    wheels, radius = run.q[:, run.system.wheel, 0], run.system.r
+    now = min(int(np.searchsorted(run.t, time)), len(run.t) - 1)
+    if wheels[now].min() - radius <= uneven[1]:
+        return time
+    come = int((wheels.max(axis=1) + radius >= uneven[0] - AHEAD).argmax())
+    return float(run.t[come])
+
+
+def _shapes(run: Trajectory) -> list[tuple[str, str]]:
+    """What the road is made of: types, and files of profiles."""
+    road = run.config.road
+    parts = road.parts if isinstance(road, SumRoad) else (road,)
+    return [(part.type, part.file if isinstance(part, ProfileRoad) else "") for part in parts]

@@ -18,7 +18,7 @@ from typing import Any
 import viser
 
 from app.panels.road_parts import with_part, without_last
-from app.runs.playback import Playback
+from app.runs.playback import Playback, time_to_look
 from app.runs.request import Driven, Failed, Finished, Outcome, Refused, Request, Simulate, first_request
 from app.runs.runner import Runner
 from app.runs.turns import SHOWING
@@ -352,9 +352,14 @@ class Session:
                 with self._lock:
                     self._refused = None
                     self._playback.fit(float(run.t[-1]) if len(run.t) else 0.0)
+                    before = self._playback.time
+                    if not self._playback.playing and isinstance(self._good, Finished):
+                        self._playback.time = time_to_look(run, self._good.trajectory, before)
                     time = self._playback.time
                 self._good, self._shown_at = outcome, monotonic()
                 self._window.show_run(outcome, time, settled=self._runner.latest.number == request.number)
+                if time < before:
+                    self._window.say("Another obstacle", f"From {before:.2f} s back to {time:.2f} s, just before it.")
                 self._workspace.finished(outcome, monotonic())
             case Driven(request, state):
                 with self._lock:

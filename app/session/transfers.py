@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from typing import Protocol
@@ -192,11 +193,25 @@ class Transfers:
             if doing:
                 self._tell("")
 
+    @contextmanager
+    def _held(self, download: Download) -> Iterator[None]:
+        """Meanwhile a run that plays stands at the time of the download, so that the picture shows that moment."""
+        if not download.playing or download.drive is not None:
+            yield
+            return
+        self._drawing.seek(download.time)
+        try:
+            yield
+        finally:
+            self._drawing.toggle()
+
     def _picture(self, download: Download) -> tuple[str, bytes]:
         if download.transparent:
             self._drawing.show_now(lambda: self._window.show_surroundings(False))
         try:
-            picture = take_picture(self._client, *download.size, None if download.transparent else download.background)
+            with self._held(download):
+                background = None if download.transparent else download.background
+                picture = take_picture(self._client, *download.size, background)
         finally:
             if download.transparent:
                 self._drawing.post("surroundings", lambda: self._window.show_surroundings(True))
@@ -206,7 +221,8 @@ class Transfers:
         from app.reports.sheet import stamped_figure  # here: matplotlib takes a second to load
 
         try:
-            picture = take_picture(self._client, *FIGURE_SIZE, "white")
+            with self._held(download):
+                picture = take_picture(self._client, *FIGURE_SIZE, "white")
         except NoPictureError:
             if download.drive is not None:
                 raise  # the drawing in its place would show the road of a run, not of the drive

@@ -18,7 +18,7 @@ from app.panels.configuration_windows import YamlWindow, show_faults
 from app.panels.files_panel import FilesPanel
 from app.panels.notifications import Notifications
 from app.panels.page_layout import LEFT, PageLayout, Screen
-from app.panels.page_setup import add_hints, add_page, apply_theme
+from app.panels.page_setup import add_hints, add_page, apply_theme, title_html
 from app.panels.parameter_panel import ParameterPanel
 from app.panels.playback_panel import PlaybackPanel
 from app.panels.plot_panel import RUNS, PlotPanel
@@ -52,6 +52,9 @@ class VehicleView(Protocol):
     def draw(self, time: float) -> None: ...
 
     def show_ghost(self, trajectory: Trajectory | None) -> None: ...
+
+    @property
+    def ghost_of_other_size(self) -> bool: ...
 
     def on_pick(self, act: Callable[[int], None]) -> None: ...
 
@@ -95,6 +98,7 @@ class Window:
         self._stands_at = monotonic() + LAID_OUT_WITHIN  # when the panels of the page are laid out, s
         self._filled = False  # the page also has what is not seen at first
         self._mode: ModeShow | None = None  # shown in the place of the run
+        self._ghost_hidden = False  # the baseline's vehicle is of another size
         self._run_number = 0
         self._road_due = 0.0  # monotonic s
         self._road_ahead = RoadAhead()
@@ -108,6 +112,7 @@ class Window:
             gui.main_panel.dock_left()
             gui.main_panel.set_width(LEFT)
             signs = add_page(gui)
+            self._title = signs.title
             signs.in_view.on_update(by_user(lambda event: actions.set_in_view(event.target.value), actions.fail))
             signs.in_front.on_update(
                 by_user(lambda event: actions.set_in_front(frozenset(event.target.value.split(","))), actions.fail)
@@ -145,6 +150,7 @@ class Window:
         self._leave_mode()
         run = done.trajectory
         self._run, self._run_number, self._drive = run, done.request.number, None
+        self._name_tab(run.config)
         self._plot(time)
         self._to_view, self._drawn = run, None
         if settled:
@@ -164,6 +170,7 @@ class Window:
         self._leave_mode()
         before, self._drive = self._drive, driven.state
         state = driven.state
+        self._name_tab(state.config)
         if before is None or before.past is not state.past:
             self._run = state.past
             self._plot(time)
@@ -179,6 +186,11 @@ class Window:
         else:
             self._notifications.forget("diverged")
 
+    def _name_tab(self, config: Config) -> None:
+        title = title_html(config)
+        if self._title.content != title:
+            self._title.content = title
+
     def show_baseline(self, baseline: Trajectory | None) -> None:
         """Compare with this run from now on; None: with no run."""
         self._end_mode()
@@ -186,6 +198,13 @@ class Window:
         if self._run is not None:
             self._plot(self._plots.time)
         self.view.show_ghost(baseline)
+        self._mind_the_ghost()
+
+    def _mind_the_ghost(self) -> None:
+        """Say once why the baseline's vehicle is not seen."""
+        before, self._ghost_hidden = self._ghost_hidden, self.view.ghost_of_other_size
+        if self._ghost_hidden and not before:
+            self.say("The baseline is of another size", "Its vehicle is not drawn beside this one. Runs compares both.")
 
     def show_mode(self) -> None:
         """Show the chosen mode instead of the run, until the run plays on or another run comes."""
@@ -268,6 +287,7 @@ class Window:
         if self._to_view is not None:
             self.view.show(self._to_view)
             self._to_view = None
+            self._mind_the_ghost()
         if self._mode is not None:
             if self._mode.since is None:
                 self._mode.since = time

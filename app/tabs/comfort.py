@@ -75,8 +75,8 @@ SEAT = "Driver's seat"
 PLACES = ((SEAT, seat), ("Centre of mass", lambda config: CENTRE_OF_MASS))
 
 
-def comfort_headline(run: Trajectory) -> str:
-    """HTML of the ride in a line."""
+def comfort_headline(run: Trajectory, driving: bool = False) -> str:
+    """HTML of the ride in a line. driving: the run is a stretch of an endless drive."""
     if not len(run.t):
         return ""
     felt = ride_comfort(run, seat(run.config))
@@ -89,15 +89,20 @@ def comfort_headline(run: Trajectory) -> str:
         class_="bad" if felt.absorbed_power > POWER_LIMIT else None,
     )
     seat_words = "Driver's seat: ", element("b", felt.reaction), f", {figure_text(felt.total)} m/s² weighted · "
-    alarms = ["run too short"] if felt.window.shortfall else []
+    alarms = []
+    if felt.window.shortfall:
+        alarms.append("still settling" if driving else "run too short")
     if felt.crest_factor is not None and felt.crest_factor > MOST_CREST:
         alarms.append(f"crest factor {figure_text(felt.crest_factor)}")
     said = (part for alarm in alarms for part in (" · ", element("span", alarm, class_="bad")))
     return str(element("div", *seat_words, power, " absorbed", *said, class_="trackride-comfort"))
 
 
-def comfort_page(run: Trajectory, baseline: Trajectory | None = None) -> str:
-    """HTML of all figures at both places, now and of the baseline, what they are taken from and what they mean."""
+def comfort_page(run: Trajectory, baseline: Trajectory | None = None, driving: bool = False) -> str:
+    """HTML of all figures at both places, now and of the baseline, what they are taken from and what they mean.
+
+    driving: the run is a stretch of an endless drive.
+    """
     if not len(run.t):
         return ""
     other = baseline if baseline is not None and len(baseline.t) else None
@@ -109,7 +114,8 @@ def comfort_page(run: Trajectory, baseline: Trajectory | None = None) -> str:
             felt_by_driver = felt
         if felt is not None:
             tables.append(_table(place, felt, None if other is None else ride_comfort(other, point(other.config))))
-    cautions = (element("p", str(each), class_="bad") for each in figure_warnings(run.config, taken, felt_by_driver))
+    found = figure_warnings(run.config, taken, felt_by_driver, driving)
+    cautions = (element("p", str(each), class_="bad") for each in found)
     words = (
         f"Taken {taken.why}; vertical and horizontal, not turned with the hull. The words are those of ISO 2631-1; "
         "where two apply, the harsher one."

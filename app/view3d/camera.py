@@ -15,7 +15,8 @@ Standpoint = Literal["side", "three-quarter", "front", "wheel"]
 FIELD_OF_VIEW = 0.36  # rad, vertical: a long lens, so that wheels stay round and heights comparable
 FARTHEST = 150.0  # m: well within the sky
 MARGIN = 1.05  # of what is to be in the picture
-OTHER_SIZE = 1.5  # times as long: a vehicle for which the camera goes nearer or further away
+OTHER_SIZE = 1.5  # times as long: a vehicle for which the camera goes nearer or further away, and of which a smaller or
+# larger one is no ghost
 
 
 class CameraPose(NamedTuple):
@@ -65,6 +66,11 @@ def camera_pose(standpoint: Standpoint, measures: Measures, aspect: float) -> Ca
     spread = np.maximum(np.abs(corners @ right) / aspect, np.abs(corners @ up))
     distance = (corners @ towards + spread / half_height).max()
     return CameraPose(centre + distance * towards, centre, FIELD_OF_VIEW)
+
+
+def about_as_long(one: Measures, other: Measures) -> bool:
+    """Whether two vehicles can be looked at from the same place."""
+    return 1 / OTHER_SIZE < one.length / other.length < OTHER_SIZE
 
 
 class BrowserCamera(Protocol):
@@ -122,7 +128,7 @@ class Camera:
 
     def fit(self, measures: Measures) -> None:
         """Go to the same standpoint of another vehicle, unless it is about as long as the one before."""
-        if self._at is not None and not 1 / OTHER_SIZE < measures.length / self._at[1].length < OTHER_SIZE:
+        if self._at is not None and not about_as_long(measures, self._at[1]):
             self.look(self._at[0], measures)
 
     async def _refit(self, camera: BrowserCamera) -> None:

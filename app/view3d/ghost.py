@@ -86,7 +86,8 @@ class Ghost:
         update(self._lines, points=self._outline.segments(q, x - float(q[self.scene.system.chassis, 0])))
 
     def show(self, on: bool) -> None:
-        self._lines.visible = on
+        if self._lines.visible != on:
+            self._lines.visible = on
 
     def remove(self) -> None:
         self._lines.remove()

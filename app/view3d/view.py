@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from app.format.colours import DARK, LIGHT, Theme, wheel_palette
 from app.format.load_unit import load_unit
-from app.view3d.camera import Camera, Standpoint, Tab
+from app.view3d.camera import Camera, Standpoint, Tab, about_as_long
 from app.view3d.ghost import Ghost
 from app.view3d.labels import WheelLabels
 from app.view3d.nodes import RoadNodes, Surroundings, VehicleNodes
@@ -75,7 +75,7 @@ class View3D:
     def show_ghost(self, trajectory: Trajectory | None) -> None:
         """Show another run's vehicle as a pale outline, at the same time and place as the present one; None: no more.
 
-        While a drive is shown it stays hidden.
+        While a drive is shown it stays hidden; so does a ghost of another size, which would fill the view or be lost.
         """
         before = self._ghost.scene if self._ghost is not None else None
         scene = build_scene(trajectory, before) if trajectory is not None and len(trajectory.t) else None
@@ -85,6 +85,12 @@ class View3D:
             else:
                 self._replace_ghost(scene)
             self.draw(self._time)
+
+    @property
+    def ghost_of_other_size(self) -> bool:
+        """Whether there is a ghost that is not shown since it is much larger or smaller than the vehicle."""
+        ghost, scene = self._ghost, self._scene
+        return ghost is not None and scene is not None and not about_as_long(ghost.scene.measures, scene.measures)
 
     def draw(self, time: float) -> None:
         """Show the run at a time, s; a time outside of the run shows its start or its end."""
@@ -165,8 +171,11 @@ class View3D:
         if self._ghost is not None:
             self._ghost.remove()
         self._ghost = Ghost(self._client.scene, scene, self._theme) if scene is not None else None
+        self._show_or_hide_ghost()
+
+    def _show_or_hide_ghost(self) -> None:
         if self._ghost is not None:
-            self._ghost.show(not self._live)
+            self._ghost.show(not self._live and not self.ghost_of_other_size)
 
     def _show_what_is_on(self) -> None:
         if self._nodes is not None:
@@ -185,14 +194,14 @@ class View3D:
     def _set_live(self, live: bool) -> None:
         if live != self._live:
             self._live, self._recentre = live, True
-            if self._ghost is not None:
-                self._ghost.show(not live)
+            self._show_or_hide_ghost()
 
     def _take(self, scene: Scene) -> None:
         before, self._scene = self._scene, scene
         if before is None or before.measures != scene.measures:
             with self._client.atomic():
                 self._build(scene)
+                self._show_or_hide_ghost()
         if before is None:
             self.set_view("side")
         else:

@@ -5,22 +5,30 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from scipy.ndimage import maximum_filter1d
 
 from model.analysis.comfort import LEAST_RATE, MOST_CREST, Comfort, ride_comfort
+from model.analysis.modes import vehicle_modes
 from model.analysis.signals import Window, seat, window
-from model.config.config import Config, SineRoad
+from model.config.config import Config, Drive, FlatRoad, RandomRoad, Simulation, SineRoad, SumRoad
+from model.config.parameters import PARAMETER
 from model.dynamics.equilibrium import NoEquilibriumError, rest_pose
 from model.dynamics.vehicle import System
+from model.road.random_road import longest
 from model.road.road import Road, profile_end, profile_start
 from model.simulation.trajectory import Trajectory, wheel_names
 
 ARM_LIMIT = np.radians(45)  # turn of a road arm beyond which the model is doubtful
 SINKING_LIMIT = 0.1  # penetration, as a share of the wheel's radius
 FLOOR_STEP = 0.01  # m between points at which the hull's floor is held against the road
+FEW_WAVES = 0.65  # times the hull's slowest mode at which the longest waves are met: from there on pitch is too small …
+ENOUGH_WAVES = 0.3  # … and where enough of them are there
+WAVE_STEP = 5.0  # m, to which the length that is enough is rounded up
+STANDING = {"road": FlatRoad(), "drive": Drive(), "simulation": Simulation()}  # what does not change the hull's modes
 IN_PHASE = 0.02  # how close to a whole number of waves the wheel gaps must come
 
 
@@ -240,13 +248,13 @@ def warnings(trajectory: Trajectory, road: Road | None = None) -> list[RideWarni
     """What the reader of this run should know, each with what it means. road: another than the run's own."""
     taken = window(trajectory)
     felt = ride_comfort(trajectory, seat(trajectory.config), taken)
-    of_profile = _profile_missed(trajectory) if road is None else ()
+    of_profile = _profile_missed(trajectory, taken) if road is None else ()
     return [
         *motion_warnings(trajectory),
         *of_profile,
         *_wheels_sunk_deep(trajectory, road),
         *_belly_grounded(trajectory, road or trajectory.road),
-        *figure_warnings(trajectory.config, taken, felt),
+        *figure_warnings(trajectory.config, taken, felt, driving=road is not None),
     ]
 
 
@@ -256,12 +264,26 @@ def motion_warnings(trajectory: Trajectory) -> list[RideWarning]:
         *_arms_turned_far(trajectory),
         *_vehicle_in_the_air(trajectory),
         *_wheels_in_phase(trajectory),
+        *_long_waves_missing(trajectory),
     ]
 
 
-def figure_warnings(config: Config, taken: Window, felt: Comfort | None) -> Iterator[RideWarning]:
-    """Of a run whose figures are taken from a window, and whose comfort at the driver's seat is this."""
-    if taken.shortfall:
+def figure_warnings(
+    config: Config, taken: Window, felt: Comfort | None, driving: bool = False
+) -> Iterator[RideWarning]:
+    """Of a run whose figures are taken from a window, and whose comfort at the driver's seat is this.
+
+    driving: it is a stretch of an endless drive.
+    """
+    if taken.shortfall and driving:
+        yield RideWarning("The drive has just begun", "Means, comfort and absorbed power are still settling: drive on.")
+    elif not taken.reached:
+        yield RideWarning(
+            taken.shortfall,
+            "Nothing here is of it: put it nearer (road.start of a profile, road.position of an obstacle), or let the "
+            "run last longer.",
+        )
+    elif taken.shortfall:
         yield RideWarning(taken.shortfall, "Means, comfort and absorbed power would be others in a longer run.")
     if felt is None:
         yield RideWarning(
@@ -358,14 +380,42 @@ def _wheels_in_phase(trajectory: Trajectory) -> Iterator[RideWarning]:
         )
 
 
-def _profile_missed(trajectory: Trajectory) -> Iterator[RideWarning]:
-    """Of a measured profile that is not reached, or that ends under way."""
+def _long_waves_missing(trajectory: Trajectory) -> Iterator[RideWarning]:
+    """Of a random road that begins to excite the hull only where it swings by itself."""
+    config = trajectory.config
+    roads = config.road.parts if isinstance(config.road, SumRoad) else (config.road,)
+    wave = max((longest(road) for road in roads if isinstance(road, RandomRoad)), default=None)
+    swing = None if wave is None else _slowest_swing(config.model_copy(update=STANDING))
+    if wave is None or swing is None:
+        return
+    speed = float(trajectory.system.v_ref)
+    enough = np.ceil(speed / (ENOUGH_WAVES * swing) / WAVE_STEP) * WAVE_STEP
+    enough = min(float(enough), PARAMETER["road.longest_wave"].high)
+    if speed / wave > FEW_WAVES * swing and wave < enough:
+        yield RideWarning(
+            f"At {3.6 * speed:.3g} km/h the random road's longest waves, {wave:g} m, are too short for the pitch",
+            f"They are met {speed / wave:.2f} times a second; by itself the hull swings at {swing:.2f} Hz, and slower "
+            f"waves would pitch it, too. Set longest_wave to {enough:g} m, and the road's length to no less.",
+        )
+
+
+@lru_cache(maxsize=4)
+def _slowest_swing(config: Config) -> float | None:
+    """Frequency of the hull's slower mode, Hz; None where it neither bounces nor pitches by itself."""
+    with suppress(NoEquilibriumError):
+        modes = vehicle_modes(config)
+        return min((mode.frequency for mode in (modes.bounce, modes.pitch) if mode is not None), default=None)
+    return None
+
+
+def _profile_missed(trajectory: Trajectory, taken: Window) -> Iterator[RideWarning]:
+    """Of a measured profile that ends under way, or is not reached while the run's window is on something else."""
     system, config = trajectory.system, trajectory.config
     start, end = profile_start(config), profile_end(config)
     if start is None:
         return
     wheels = trajectory.q[:, system.road_wheels, 0]
-    if wheels.max() < start:
+    if wheels.max() < start and taken.reached:
         yield RideWarning(
             f"The profile was not reached: it begins at x = {start:.6g} m, the wheels came to {wheels.max():.4g} m",
             "Nothing here is of the measured road: give road.start, where its first point is to lie, or a longer run.",

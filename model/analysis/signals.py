@@ -31,6 +31,7 @@ class Window:
     why: str  # "from 4.3 s on, when the start has died away"
     shortfall: str = ""  # a sentence that says what the run is too short for; empty where it is long enough
     goes_on: bool = True  # whether it would be longer in a longer run
+    reached: bool = True  # whether any wheel comes to what is uneven
 
     @property
     def length(self) -> float:
@@ -71,9 +72,9 @@ def window(trajectory: Trajectory) -> Window:
     """The stretch of a run of at least one sample that its figures are taken from.
 
     Waves (sine or random, in a sum too) go on: from when the last road wheel is on the full waves and the start has
-    died away to the end of the run. An obstacle or a measured profile comes to an end: from the first wheel's contact
-    until the last wheel is off it and the hull has settled, so that a longer run has the same figures. A level road,
-    and a stretch of a drive, count as a whole.
+    died away to the end of the run; of a sine the last whole waves, as a part of one would bias means. An obstacle or a
+    measured profile comes to an end: from the first wheel's contact until the last wheel is off it and the hull has
+    settled, so that a longer run has the same figures. A level road, and a stretch of a drive, count as a whole.
     """
     start, end = float(trajectory.t[0]), float(trajectory.t[-1])
     if start > 0:
@@ -97,7 +98,14 @@ def _on_waves(trajectory: Trajectory, parts: list[SimpleRoad]) -> Window:
     full = max(profile_of(wave, wheels.x[0], wheels.radius, 0.0).pieces[-1].nodes[0] for wave in waves)
     steady = float((full - wheels.x[-1]) / trajectory.system.v_ref + SETTLING)
     if end - steady >= SHORTEST:
-        return Window(steady, end, f"from {steady:.1f} s on, when the start has died away")
+        over = ""
+        if len(waves) == 1 and isinstance(waves[0], SineRoad):
+            period = waves[0].wavelength / float(trajectory.system.v_ref)
+            count = int((end - steady) / period)
+            if count > 0:
+                steady = end - count * period
+                over = "over the last wave, " if count == 1 else f"over the last {count} waves, "
+        return Window(steady, end, f"{over}from {steady:.1f} s on, when the start has died away")
     start = min(steady, end / 2)
     shortfall = f"The start has died away only after {steady:.1f} s: let the run last {steady + SHORTEST:.0f} s or more"
     return Window(start, end, f"from {start:.1f} s on", shortfall)
@@ -110,7 +118,11 @@ def _over(trajectory: Trajectory, uneven: tuple[float, float], name: str, measur
     wheels = trajectory.q[:, system.wheel, 0]
     come = wheels.max(axis=1) + system.r >= uneven[0]
     if not come.any():
-        return Window(float(t[0]), last, "over the whole run", f"The run ends before a wheel comes to the {name}")
+        shortfall = (
+            f"The run ends before a wheel comes to the {name}: it begins at x = {uneven[0]:.6g} m, the wheels came to "
+            f"{wheels.max():.4g} m"
+        )
+        return Window(float(t[0]), last, "over the whole run", shortfall, reached=False)
     first = int(come.argmax())
     start = float(t[first])
     began = f"from {start:.2f} s, when the first wheel comes to the {name},"

@@ -8,7 +8,7 @@ from model.analysis.signals import CENTRE_OF_MASS, Point, point_acceleration, wi
 from model.config.config import Config, SineRoad
 from model.simulation.trajectory import Trajectory
 
-PADDING = 8  # points of a spectrum for each one that the signal's length resolves: a peak shows its full height
+PADDING = 16  # points of a spectrum for each one that the signal's length resolves: a peak shows its full height
 SEGMENT = 5.0  # s: longer signals are cut into pieces of this length, whose power densities are averaged
 
 

@@ -19,6 +19,7 @@ from model.config.profile_files import ProfileFile, read_profile_file
 from model.config.profile_points import FILE_LIMIT, PointsError
 from model.config.strict_yaml import dump_yaml, parse_yaml
 from model.config.validation import EXCLUSIVE, ConfigError, Fault, check_values, convert, unknown_fault, wheel_positions
+from model.files import read_file
 
 __all__ = [
     "Config",
@@ -188,6 +189,7 @@ class RandomRoad(Section):
     roughness_class: str = _field("road.roughness_class")
     seed: int = _field("road.seed")
     length: float = _field("road.length")
+    longest_wave: float = _field("road.longest_wave")
 
 
 class ProfileRoad(Section):
@@ -345,7 +347,7 @@ def load_config(
             data = (_PRESETS / f"{name}.yaml").read_bytes()
         else:
             folder = Path(path_or_preset).parent
-            data = _read(path_or_preset, SIZE_LIMIT)
+            data = read_file(path_or_preset, SIZE_LIMIT)
     except FileNotFoundError:
         known = ", ".join(preset_names())
         raise _text_error(f"there is no such file, nor a preset of that name ({known})", name) from None
@@ -368,18 +370,12 @@ def read_profile(path: str | Path, columns: Any = (), units: Any = (), key: str 
         allowed = f"give {PARAMETER['road.columns'].allowed}, and {PARAMETER['road.units'].allowed}"
         raise ConfigError([Fault(f"{place}columns", "", f"columns or units are not allowed; {allowed}")]) from None
     try:
-        return read_profile_file(_read(path, FILE_LIMIT), columns, units)
+        return read_profile_file(read_file(path, FILE_LIMIT), columns, units)
     except PointsError as error:
         message = f"{error} ({Path(path).name[:80]})"
     except (OSError, ValueError) as error:
         message = f"{str(path)[:200]} cannot be read: {getattr(error, 'strerror', None) or error}"
     raise ConfigError([Fault(key, str(path), message)])
-
-
-def _read(path: str | Path, limit: int) -> bytes:
-    """A file's content, but no more than a byte over the limit."""
-    with open(path, "rb") as file:
-        return file.read(limit + 1)
 
 
 def _configured(

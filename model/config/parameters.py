@@ -386,6 +386,12 @@ PARAMETERS: tuple[Parameter, ...] = (
         group=ROAD, source=OURS, roads=("random",),
         description="Length of random road, after which it repeats itself.",
         growth="It takes longer until the same bumps come again; it is another road of the same roughness."),
+    Parameter("road.longest_wave", "Longest wave", "", "m", 20.0, 20, 90, 20, 90, 5,
+        group=ROAD, source=OURS, roads=("random",),
+        description="Longest waves of the random road; none is longer than the length after which it repeats itself. "
+        "Shorter waves stay as they are. At speed, a hull pitches on long waves, too: above about 50 km/h give more "
+        "than 20 m.",
+        growth="Longer and higher waves come in: at speed the hull pitches more, loads hardly change."),
     Parameter("road.file", "Profile file", "", "", "", 0, 500,
         group=ROAD, source=OURS, roads=("profile",), kind="text",
         description="File of the profile: a table of text with columns of x and y (CSV and the like), ERD or OpenCRG; "

@@ -21,6 +21,7 @@ from model.config.profile_points import (
     STATIONED,
     PointsError,
     check,
+    points_count,
     points_text,
     span_text,
 )
@@ -306,7 +307,7 @@ def _sheet(text: str) -> _Sheet:
         above.append(row)
     lines, rows = [number for number, _ in numbered[len(above) :]], [line for _, line in numbered[len(above) :]]
     if len(rows) < 2:
-        raise PointsError(f"{len(rows)} points; give 2 to {POINT_LIMIT}, two numbers each: x and y in m")
+        raise PointsError(f"{points_count(len(rows))}; give 2 to {POINT_LIMIT}, two numbers each: x and y in m")
     table, cells = _plain_numbers(rows, separator), []
     if table is None:
         cells = _cells(rows, lines, separator)

@@ -34,18 +34,23 @@ def points_text(x: np.ndarray, y: np.ndarray) -> str:
     return ", ".join(f"{a!r} {b!r}" for a, b in zip(x.tolist(), y.tolist(), strict=True))
 
 
+def points_count(count: int) -> str:
+    """ "1 point", "2 points"."""
+    return f"{count} point{'' if count == 1 else 's'}"
+
+
 def span_text(x: np.ndarray, y: np.ndarray) -> str:
     """What points (K,) in m span, in words: "241 points, 0 to 60 m, heights −31 to 45 mm"."""
     unit, factor = ("mm", 1e3) if np.abs(y).max() < 1.0 else ("m", 1.0)
     low, high = (f"{value:.4g}".replace("-", "\u2212") for value in (y.min() * factor + 0.0, y.max() * factor + 0.0))
     first, last = (number_text(round(float(value), 2) + 0.0).replace("-", "\u2212") for value in (x[0], x[-1]))
-    return f"{len(x)} points, {first} to {last} m, heights {low} to {high} {unit}"
+    return f"{points_count(len(x))}, {first} to {last} m, heights {low} to {high} {unit}"
 
 
 def _checked(rows: list[str], name: Callable[[int], str]) -> tuple[np.ndarray, np.ndarray]:
     """x and y of rows of two numbers each; `name` says where a row, counted from 0, stands."""
     if not 2 <= len(rows) <= POINT_LIMIT:
-        raise PointsError(f"{len(rows)} points; give 2 to {POINT_LIMIT}, two numbers each: x and y in m")
+        raise PointsError(f"{points_count(len(rows))}; give 2 to {POINT_LIMIT}, two numbers each: x and y in m")
     try:
         table = np.loadtxt(rows, comments=None, ndmin=2)
     except ValueError:
@@ -62,7 +67,7 @@ def _checked(rows: list[str], name: Callable[[int], str]) -> tuple[np.ndarray, n
 def check(x: np.ndarray, y: np.ndarray, name: Callable[[int], str]) -> None:
     """Raise PointsError for the first of the points (K,) in m that makes no road; `name` says where a row stands."""
     if not 2 <= len(x) <= POINT_LIMIT:
-        raise PointsError(f"{len(x)} points; give 2 to {POINT_LIMIT}")
+        raise PointsError(f"{points_count(len(x))}; give 2 to {POINT_LIMIT}")
 
     def refuse(bad: np.ndarray, message: str) -> None:
         if bad.any():

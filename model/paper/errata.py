@@ -39,7 +39,12 @@ ERRATA: tuple[Erratum, ...] = (
         "Six wheels have five gaps, so 3.5 m means 0.7 m; 0.583 m is 3.5/6, and wheels of 0.64 m diameter would "
         "overlap. The preset paper_0583 keeps the printed value.",
     ),
-    Erratum("Section 5", "“100 mm amplitude”.", "It is taken from the mean of the road to a crest."),
+    Erratum(
+        "Section 5",
+        "“100 mm amplitude”.",
+        "It is taken from the mean of the road to a crest. From crest to trough it would be an amplitude of 50 mm: "
+        "the command “trackride paper” says what hangs on that.",
+    ),
     Erratum(
         "Not in the paper",
         "Contact stiffness and friction; length, angle and mass of the arms; height of the centre of mass; cruise "

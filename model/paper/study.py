@@ -36,6 +36,8 @@ SOFT, STIFF = 0.1, 3.0  # the two that are run again under every other assumptio
 SPEEDS = (5.0, 7.5, 10.0, 12.5, 15.0, 17.5, 20.0, 25.0, 30.0, 40.0, 50.0, 60.0)  # km/h
 AMPLITUDES = (0.01, 0.02, 0.04, 0.06, 0.08, 0.09, 0.1, 0.11, 0.12, 0.15)  # m
 LOOSE = 0.1  # of the speed controller's gains, for a driver who holds the speed badly
+HALF = 0.05  # m: the paper's 100 mm read from crest to trough
+TIGHT = {"simulation.rtol": 1e-9, "simulation.atol": 1e-11}
 
 # What the paper leaves open, and values that it may have had instead of ours
 ALTERNATIVES: dict[str, tuple[Any, ...]] = {
@@ -60,6 +62,7 @@ ALTERNATIVES: dict[str, tuple[Any, ...]] = {
     "drive.integral_gain": (0.0, 4e4),
     "drive.force_limit": (2e4, 8e4),
     MODE: ("prescribed",),
+    AMPLITUDE: (HALF,),
 }
 
 
@@ -69,7 +72,7 @@ class StudyError(RuntimeError):
 
 @dataclass(frozen=True)
 class Figures:
-    """What one run comes to, over its last WAVES waves. Shares and parts are 0…1."""
+    """What one run comes to, over its last WAVES waves unless said otherwise. Shares and parts are 0…1."""
 
     excitation: float  # Hz, v/λ
     peak_frequency: float  # Hz, of the highest amplitude in the spectrum of the hull's vertical acceleration
@@ -85,7 +88,8 @@ class Figures:
     static_share: float  # of the load on imaginary wheels, at rest
     static_road_load: float  # N, mean of road wheels at rest
     drift: float  # m, by which joints were apart at worst, in the whole run
-    computing: float  # s of computing for each second simulated
+    duration: float  # s, of the whole run
+    computing: float  # s of computing for each second simulated, in the whole run
 
     @property
     def follows_waves(self) -> bool:
@@ -118,7 +122,9 @@ class PaperStudy:
     prescribed: Figures  # at exactly constant speed
     loose: Figures  # with LOOSE speed control
     unstabilised: Figures  # without Baumgarte's terms
+    unstabilised_tight: Figures  # that with TIGHT tolerances
     alternatives: tuple[Alternative, ...]
+    half: PaperStudy | None  # the same on waves of amplitude HALF, other preloads its only alternatives; None in that
 
 
 def study_paper(on_progress: Callable[[float], None] | None = None) -> PaperStudy:
@@ -127,17 +133,37 @@ def study_paper(on_progress: Callable[[float], None] | None = None) -> PaperStud
     Raises StudyError.
     """
     paper = load_config("paper")
-    stiffness, deflection = _number(paper, STIFFNESS), _number(paper, PRELOAD)
-    count = 2 * len(FACTORS) + len(SPEEDS) + len(AMPLITUDES) + 4 + 3 * (1 + sum(map(len, ALTERNATIVES.values())))
+    half = paper.replace({AMPLITUDE: HALF}), {PRELOAD: ALTERNATIVES[PRELOAD]}
+    count = _count(ALTERNATIVES) + _count(half[1])
     done = 0
 
-    def run(changes: Mapping[str, Any]) -> Figures:
+    def run(config: Config) -> Figures:
         nonlocal done
-        figures = run_figures(paper.replace(changes))
+        figures = run_figures(config)
         done += 1
         if on_progress is not None:
             on_progress(done / count)
         return figures
+
+    return _study(paper, ALTERNATIVES, run, _study(*half, run, None))
+
+
+def _count(alternatives: Mapping[str, tuple[Any, ...]]) -> int:
+    """How many runs a study with these alternatives takes."""
+    return 2 * len(FACTORS) + len(SPEEDS) + len(AMPLITUDES) + 5 + 3 * (1 + sum(map(len, alternatives.values())))
+
+
+def _study(
+    paper: Config,
+    alternatives: Mapping[str, tuple[Any, ...]],
+    figures: Callable[[Config], Figures],
+    half: PaperStudy | None,
+) -> PaperStudy:
+    """The runs about one reading of the paper. figures: runs a configuration, as run_figures does."""
+    stiffness, deflection = _number(paper, STIFFNESS), _number(paper, PRELOAD)
+
+    def run(changes: Mapping[str, Any]) -> Figures:
+        return figures(paper.replace(changes))
 
     def alternative(key: str = "", value: Any = None) -> Alternative:
         changes = {key: value} if key else {}
@@ -145,6 +171,7 @@ def study_paper(on_progress: Callable[[float], None] | None = None) -> PaperStud
         return Alternative(key, value, run(changes), *others)
 
     force = {PRELOAD_FORCE: stiffness * deflection}
+    bare = dict.fromkeys(BAUMGARTE, 0.0)
     return PaperStudy(
         run=simulate(paper),
         paper=alternative(),
@@ -155,8 +182,10 @@ def study_paper(on_progress: Callable[[float], None] | None = None) -> PaperStud
         no_track=run({"vehicle.imaginary_wheels.enabled": False}),
         prescribed=run({MODE: "prescribed"}),
         loose=run({gain: LOOSE * _number(paper, gain) for gain in GAINS}),
-        unstabilised=run(dict.fromkeys(BAUMGARTE, 0.0)),
-        alternatives=tuple(alternative(key, value) for key, values in ALTERNATIVES.items() for value in values),
+        unstabilised=run(bare),
+        unstabilised_tight=run({**bare, **TIGHT}),
+        alternatives=tuple(alternative(key, value) for key, values in alternatives.items() for value in values),
+        half=half,
     )
 
 
@@ -194,6 +223,7 @@ def figures_of(run: Trajectory, frequency: float) -> Figures:
         static_share=float(rest[n:].sum() / rest.sum()),
         static_road_load=float(rest[:n].mean()),
         drift=float(run.constraint_residual.max()),
+        duration=float(run.t[-1]),
         computing=run.statistics.seconds / float(run.t[-1]),
     )
 

@@ -4,12 +4,13 @@ The one-sided density of the heights is G_d(n) = G_d(n_0) (n/n_0)^−2 with n_0 
 class A, four times as much for each further class (the standard's geometric means). A road of length ℓ is the sum of
 cosines at n_k = k/ℓ within the band, of amplitude √(2 G_d(n_k)/ℓ) and random phase, so that it repeats itself smoothly.
 
-The band ends where a wheel feels nothing any more: at waves as short as its radius. It touches the ground over about
-half of that, more than one point, and would average shorter ones. Under larger wheels the road only loses its finest
-waves; the others stay.
+The band begins at the longest wave that is asked for. It ends where a wheel feels nothing any more: at waves as short
+as its radius. It touches the ground over about half of that, more than one point, and would average shorter ones. With
+another longest wave, or under other wheels, a road gains or loses waves at the ends of its band; all others stay.
 
 Phases come from the bit stream of PCG64, which NumPy keeps as it is: the k-th number of 64 bits, its upper 53 bits
-divided by 2^53, is the phase of the k-th cosine in turns. Only rounding depends on the machine.
+divided by 2^53, is the phase of the k-th cosine in turns, whether those before it are in the band or not. Only
+rounding depends on the machine.
 """
 
 from __future__ import annotations
@@ -22,9 +23,10 @@ from model.road.profile import Derivatives, Profile, rising, spline, weighted
 CLASSES = "ABCDEFGH"
 CLASS_A = 16e-6  # G_d(n_0), m³
 N_0 = 0.1  # cycles/m
-LOWEST, HIGHEST = 0.05, 10.0  # cycles/m, the band
+HIGHEST = 10.0  # cycles/m, the end of the band
 NODES_PER_WAVE = 5  # of the shortest; quintics between them miss it by 1e-4 of its amplitude
-RUN_IN = 5.0  # m over which the road grows to its full height
+PLACE = 5.0  # m from the start to where the first repetition begins
+RUN_IN = 0.25  # of its longest wave, over which the road grows to its full height
 
 
 def density(roughness_class: str, n: np.ndarray) -> np.ndarray:
@@ -37,14 +39,21 @@ def highest(radius: float) -> float:
     return min(HIGHEST, 1 / radius)
 
 
-def heights(roughness_class: str, seed: int, length: float, radius: float) -> Derivatives:
+def longest(road: RandomRoad) -> float:
+    """The longest wave that there can be on a road, m."""
+    return min(road.longest_wave, road.length)
+
+
+def heights(road: RandomRoad, radius: float) -> Derivatives:
     """h, h′, h″ (K,) of one repetition at x = 0, ℓ/K, 2ℓ/K, …, for wheels of a radius."""
+    length = road.length
     waves = int(np.floor(highest(radius) * length + 1e-9))
     count = 2 * int(np.ceil(waves * NODES_PER_WAVE / 2))
     k = np.arange(1, waves + 1)
-    turns = (np.random.PCG64(seed).random_raw(len(k)) >> np.uint64(11)) / 2.0**53
+    turns = (np.random.PCG64(road.seed).random_raw(len(k)) >> np.uint64(11)) / 2.0**53
     n = k / length
-    amplitude = np.where(n >= LOWEST - 1e-12, np.sqrt(2 * density(roughness_class, n) / length), 0.0)
+    within = n >= 1 / road.longest_wave - 1e-12
+    amplitude = np.where(within, np.sqrt(2 * density(road.roughness_class, n) / length), 0.0)
     line = np.zeros(count // 2 + 1, dtype=complex)
     line[k] = count / 2 * amplitude * np.exp(2j * np.pi * turns)
     wave = 2j * np.pi * np.arange(len(line)) / length
@@ -53,13 +62,17 @@ def heights(roughness_class: str, seed: int, length: float, radius: float) -> De
 
 
 def random_profile(road: RandomRoad, start: float, radius: float) -> Profile:
-    """The road from `start` on: it runs in over some RUN_IN, and from there on repeats every `length`, both m."""
-    once = [np.append(values, values[0]) for values in heights(road.roughness_class, road.seed, road.length, radius)]
-    nodes = np.linspace(0.0, road.length, len(once[0]))
-    first = int(np.searchsorted(nodes, road.length - RUN_IN))
+    """The road from `start` on, m: it runs in over some RUN_IN, and from there on repeats every `length`."""
+    wave = heights(road, radius)
+    count = len(wave[0])
+    nodes = np.linspace(0.0, road.length, count + 1)
+    # A longer run-in ends behind PLACE, so that no bump moves
+    behind = round((RUN_IN * longest(road) - PLACE) * count / road.length)
+    once = [np.append(values, values[0]) for values in (np.roll(part, -behind) for part in wave)]
+    first = int(np.searchsorted(nodes, road.length - PLACE)) - behind
     run_in = road.length - nodes[first]
 
-    # What would come before the first repetition, times a weight that rises from 0 to 1
+    # What would come before it, times a weight that rises from 0 to 1
     u = (nodes[first:] - nodes[first]) / run_in
     h, h1, h2 = (values[first:] for values in once)
     risen = weighted(rising(u, run_in), (h, h1, h2))

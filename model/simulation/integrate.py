@@ -32,6 +32,7 @@ from model.simulation.steppers import (
     trouble,
 )
 from model.simulation.tableaus import DORMAND_PRINCE, STRETCHED
+from model.simulation.trajectory import sample_count
 
 if TYPE_CHECKING:
     from scipy.integrate import OdeSolver
@@ -91,7 +92,7 @@ class Integration:
         self.system, self.lanes, self.road = system, in_lanes(system), road
         self.duration, self.rate = duration, rate
         self.integrator, self.rtol, self.atol = integrator, rtol, atol
-        self.samples = make_samples(system, capacity or int(np.floor(duration * rate + 1e-9)) + 1)
+        self.samples = make_samples(system, capacity or sample_count(duration, rate))
         self._memory = Memory(y.copy(), np.zeros_like(y), np.zeros_like(y), np.zeros((STAGES, len(y))))
         self._work = make_work(system)
         self._extremes = make_extremes(system)
@@ -194,6 +195,10 @@ class Integration:
             runge_kutta_4(*problem, *kept, span)
         else:
             self._advance_scipy(t_stop)
+        if self.status in REASON and self.samples_done == 0 and np.isfinite(self.y).all():
+            # The good part of a run has its start at least.
+            record(self.lanes, self.road, 0.0, self.y, self._memory.k[0], self._work, self.samples, 0)
+            self._clock.recorded = 1
         return self.status
 
     def _advance_scipy(self, t_stop: float) -> None:

@@ -24,6 +24,7 @@ SMALLEST_STEP = 1e-10  # s
 MOST_FORCED = 100  # steps of this length until one is longer again
 OVER = 2e-7  # s that take an arm over the beginning of a stop
 FASTEST = 1e3  # m/s: a body faster than this shows that the run has diverged
+FURTHEST = 1e20  # of the sum of a state: far above any vehicle's, and forces and accelerations are still finite
 STEPS_PER_CHUNK = 5_000  # so that a stop is heeded however stiff the run
 POWERS = 30  # of the Jacobian, to find its largest eigenvalue to a few per cent
 NUDGE = 1e-6  # m, rad, m/s or rad/s: a change small enough for the system to be linear
@@ -149,7 +150,7 @@ def trouble(lanes, y):
     total = 0.0
     for i in range(len(y)):
         total += y[i]
-    if not np.isfinite(total):
+    if not abs(total) < FURTHEST:
         return Status.NOT_FINITE.value
     return Status.RUNAWAY.value if fastest > FASTEST else Status.RUNNING.value
 

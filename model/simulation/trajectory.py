@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 import csv
-import zlib
 from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 from io import BytesIO, StringIO
+from math import prod
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
-from zipfile import BadZipFile
 
 import numpy as np
 
-from model.config.config import Config, dump_config, parse_config
+from model.config.config import SIZE_LIMIT, Config, dump_config, parse_config
 from model.dynamics.vehicle import System, build_system, kinetic_energy
-from model.files import write_whole
+from model.files import open_file, write_whole
+from model.simulation.npz import Npz, NpzError
 from model.simulation.peaks import PEAK_NAMES, Peaks, sampled_peaks
 
 if TYPE_CHECKING:
     from model.road.road import Road
 
-LARGEST = 1e50  # of a file's numbers: far above any run's, and their fourth powers can still be added up
 FASTEST = 100.0  # m/s: no run comes further in its time; a file's numbers may be anything
 LONGEST_TEXT = 300  # characters of a file's status and advice
 
@@ -107,39 +106,43 @@ class Trajectory:
         write_whole(path, self.to_bytes(path.suffix))
 
     @classmethod
-    def load(cls, path: str | Path | IO[bytes], name: str = "") -> Trajectory:
-        """Read a run from .npz, a file that messages call `name`.
+    def load(cls, path: str | Path | IO[bytes], name: str = "", largest: float = np.inf) -> Trajectory:
+        """Read a run from .npz, a file that messages call `name`, with arrays of `largest` bytes in all at most.
 
-        Raises OSError, ValueError (not such a file) or ConfigError (its configuration).
+        Nothing is unpacked that does not fit the configuration in the file. Raises OSError, ValueError (not such a
+        file) or ConfigError (its configuration).
         """
         name = name or str(path)
-        no_run = f"{name} is not a run saved by trackride run --out"
         try:
-            with np.load(path, allow_pickle=False) as file:
-                arrays = {name: file[name] for name in file.files}
-            counters = {f.name: arrays.pop(f.name).item() for f in fields(RunStatistics)}
-            texts = {key: arrays.pop(key).item() for key in _TEXTS}
-            parts = {key: arrays[key] for key in _ARRAYS}
-            added = {key: arrays[key] for key in (*_PEAKS, "work") if key in arrays}
-        except (KeyError, TypeError, ValueError, EOFError, RuntimeError, BadZipFile, zlib.error) as error:
-            raise ValueError(no_run) from error
-        config = parse_config(str(texts.pop("config")), source=f"{name}: config")
-        for key, value in counters.items():
-            if type(value) not in (int, float) or not (value > 0 or (value == 0 and type(value) is int)):
-                raise ValueError(f"{no_run}: {key} must be a positive number")
+            if not isinstance(path, str | Path):
+                return cls._read(Npz(path), name, largest)
+            with open_file(path) as file:
+                return cls._read(Npz(file), name, largest)
+        except NpzError as error:
+            raise ValueError(f"{name} is not a run saved by trackride run --out: {error}") from error
+
+    @classmethod
+    def _read(cls, file: Npz, name: str, largest: float) -> Trajectory:
+        """Raises NpzError or ConfigError."""
+        config = parse_config(file.text("config", SIZE_LIMIT), source=f"{name}: config")
+        texts: dict[str, Any] = {key: file.text(key, LONGEST_TEXT) for key in ("status", "advice")}
         for key, text in texts.items():
-            if not isinstance(text, str) or not text.isprintable() or len(text) > LONGEST_TEXT:
-                raise ValueError(f"{no_run}: {key} must be a text of at most {LONGEST_TEXT} printable characters")
-        shapes, given = _shapes(build_system(config), parts["t"].size), parts | added
-        for key, values in given.items():
-            shape = shapes[key]
-            if not (values.shape == shape and values.dtype == float and (np.abs(values) < LARGEST).all()):
-                raise ValueError(f"{no_run}: {key} must hold {shape} finite numbers")
-        if (parts["t"][:1] != 0.0).any() or (np.diff(parts["t"]) <= 0.0).any():
-            raise ValueError(f"{no_run}: t must begin at 0 and grow")
-        tracked = Peaks(**{name: added[key] for key, name in _PEAKS.items()}) if set(_PEAKS) <= set(added) else None
-        statistics = RunStatistics(**counters)
-        return cls(**parts, **texts, config=config, statistics=statistics, work=added.get("work"), tracked=tracked)
+            if not text.isprintable():
+                raise NpzError(f"{key} must be of printable characters")
+        statistics = RunStatistics(**{f.name: file.number(f.name) for f in fields(RunStatistics)})  # type: ignore[arg-type]
+        samples, most = prod(file.shape("t")), sample_count(config.simulation.duration, config.simulation.output_rate)
+        if not 0 < samples <= most:
+            raise NpzError(f"t must hold 1 to {most} numbers")
+        shapes = _shapes(build_system(config), samples)
+        given = [*_ARRAYS, *(key for key in (*_PEAKS, "work") if key in file)]
+        if 8 * sum(prod(shapes[key]) for key in given) > largest:
+            raise NpzError(f"it holds more than {largest / 1e6:.0f} MB")
+        arrays: dict[str, Any] = {key: file.numbers(key, shapes[key]) for key in given}
+        if arrays["t"][0] != 0.0 or (np.diff(arrays["t"]) <= 0.0).any():
+            raise NpzError("t must begin at 0 and grow")
+        peaks = {name: arrays.pop(key) for key, name in _PEAKS.items() if key in arrays}
+        tracked = Peaks(**peaks) if len(peaks) == len(_PEAKS) else None
+        return cls(**arrays, **texts, config=config, statistics=statistics, tracked=tracked)
 
     def to_bytes(self, suffix: str) -> bytes:
         """The content of the file that `save` would write: ".npz" or ".csv"."""
@@ -171,8 +174,14 @@ class Trajectory:
         text = StringIO()
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(columns)
-        writer.writerows([f"{value:.9g}" for value in row] for row in np.column_stack(list(columns.values())))
+        table = np.column_stack(list(columns.values())) + 0.0  # no minus before zero
+        writer.writerows([f"{value:.9g}" for value in row] for row in table)
         file.write(text.getvalue().encode())
+
+
+def sample_count(duration: float, rate: float) -> int:
+    """Samples of a run of `duration`, s, at `rate`, 1/s, when it is complete."""
+    return int(np.floor(duration * rate + 1e-9)) + 1
 
 
 def wheel_names(system: System) -> list[str]:

@@ -97,6 +97,7 @@ class FakeView:
         self.client, self.dark = client, dark
         self.switches: dict[str, bool] = {}  # that were used
         self.ghosts: list[Trajectory | None] = []
+        self.ghost_of_other_size = False
         self.runs: list[Trajectory] = []
         self.roads: list[Road] = []  # of the drive
         self.times: list[float] = []

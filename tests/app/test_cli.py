@@ -223,6 +223,29 @@ def test_ctrl_c_keeps_the_good_part(tmp_path, monkeypatch):
     assert signal.getsignal(signal.SIGINT) is before
 
 
+@pytest.mark.parametrize("times", [1, 2])
+def test_ctrl_c_while_the_file_is_written_lets_it_be_finished_and_the_second_does_not(tmp_path, monkeypatch, times):
+    before, to_bytes = signal.getsignal(signal.SIGINT), Trajectory.to_bytes
+
+    def interrupted(run: Trajectory, suffix: str) -> bytes:
+        for _ in range(times):
+            signal.raise_signal(signal.SIGINT)
+        return to_bytes(run, suffix)
+
+    monkeypatch.setattr(Trajectory, "to_bytes", interrupted)
+    out = tmp_path / "run.npz"
+    out.write_text("the old one")
+    result = trackride("run", *SHORT, "--out", out)
+    assert result.exit_code == 130
+    assert "Interrupted" in result.stderr
+    assert list(tmp_path.iterdir()) == [out]
+    if times == 1:
+        assert Trajectory.load(out).complete
+    else:
+        assert out.read_text() == "the old one"
+    assert signal.getsignal(signal.SIGINT) is before
+
+
 def test_a_progress_bar_stands_on_a_terminal(monkeypatch):
     monkeypatch.setattr(cli, "errors", Console(stderr=True, force_terminal=True))
     result = trackride("run", *SHORT, "--set", "name=[red]Tricky")
@@ -235,18 +258,13 @@ def test_a_progress_bar_stands_on_a_terminal(monkeypatch):
 # Report
 
 
-def test_a_report_that_cannot_be_written_leaves_the_old_one(tmp_path, monkeypatch):
-    def half(self: Path, content: bytes) -> None:
-        with self.open("wb") as file:
-            file.write(content[:100])
-        raise OSError(errno.ENOSPC, "No space left on device")
-
+def test_a_report_that_cannot_be_written_leaves_the_old_one(tmp_path, full_disk):
     out = tmp_path / "report.html"
     out.write_text("the old one")
-    monkeypatch.setattr(Path, "write_bytes", half)
-    result = trackride("report", *SHORT, "--out", out)
+    with full_disk():
+        result = trackride("report", *SHORT, "--out", out)
     assert result.exit_code == 1
-    assert f"cannot write {out}: No space left on device" in result.stderr
+    assert f"cannot write {out}: File too large" in result.stderr
     assert out.read_text() == "the old one"
     assert list(tmp_path.iterdir()) == [out]
 

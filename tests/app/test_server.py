@@ -10,6 +10,7 @@ import socket
 import subprocess
 import sys
 import threading
+import time
 import urllib.request
 import weakref
 from typing import Any
@@ -17,6 +18,7 @@ from typing import Any
 import pytest
 import viser
 
+import app.cli
 import app.server
 from app.server import Explorer, ServerError, free_port, serve
 from model.config.config import load_config
@@ -180,27 +182,83 @@ def test_it_warns_when_others_can_open_it(
     assert ("with its token" in said) == with_token
 
 
-def test_it_says_where_it_is_and_ends_on_interrupt(taken: int) -> None:
-    code = (  # whoever starts the tests in the background has their children ignore interrupts
-        "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
-        "from model.config.config import load_config; from app.server import serve; "
-        f"serve(load_config('paper'), 'paper', port={taken}, open_browser=False)"
-    )
-    with subprocess.Popen(
-        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+def started(*options: str) -> subprocess.Popen[str]:
+    """`trackride explore` in a process of its own, which heeds interrupts whatever the tests were started by."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "app", "explore", "--no-browser", *options],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
         env=os.environ | {"PYTHONUNBUFFERED": "1"},
-    ) as process:  # fmt: skip
-        assert process.stdout is not None
-        said = [process.stdout.readline(), process.stdout.readline()]
-        process.send_signal(signal.SIGINT)
-        rest, errors = process.communicate(timeout=20)
+    )
+
+
+def test_it_says_where_it_is_and_ends_on_interrupt(taken: int) -> None:
+    with started("--port", str(taken)) as process:
+        try:
+            assert process.stdout is not None
+            said = [process.stdout.readline(), process.stdout.readline()]
+            process.send_signal(signal.SIGINT)
+            rest, errors = process.communicate(timeout=20)
+        finally:
+            process.kill()
     port = int(said[0].rsplit(" ", 1)[1].strip(".\n"))
     assert f"Port {taken} is taken" in said[0]
     assert port != taken
     assert f"http://127.0.0.1:{port} " in said[1]
-    assert "Stopped." in rest
     assert "Traceback" not in errors
     assert process.returncode == 0
+    assert "Stopping" in rest
+
+
+def test_what_would_not_end_after_an_interrupt_is_ended() -> None:
+    """As code that loses the exception, or waits for a thread that compiles."""
+    code = (
+        "import app.server, app.cli, time\n"
+        "def serve(*given, **options):\n"
+        "    while True:\n"
+        "        try: print('begun') or time.sleep(60)\n"
+        "        except KeyboardInterrupt: print('lost')\n"
+        "app.server.serve = serve\n"
+        "app.cli.main()"
+    )
+    command = [sys.executable, "-u", "-c", code, "explore"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            assert process.stdout is not None
+            assert process.stdout.readline() == "begun\n"
+            sent = time.monotonic()
+            process.send_signal(signal.SIGINT)
+            assert process.communicate(timeout=20) == ("lost\nbegun\n", "")
+            assert app.cli.STOPPING <= time.monotonic() - sent < app.cli.STOPPING + 2.0
+        finally:
+            process.kill()
+
+
+def test_an_interrupt_while_it_is_loaded_ends_it_at_once() -> None:
+    """Here at the first library that the command loads."""
+    code = (
+        "import sys, time\n"
+        "class Slow:\n"
+        "    def find_spec(self, name, *rest):\n"
+        "        while name == 'typer':\n"
+        "            print('loading')\n"
+        "            try: time.sleep(60)\n"
+        "            except BaseException: pass\n"
+        "sys.meta_path.insert(0, Slow())\n"
+        "from app.__main__ import main\n"
+        "main()"
+    )
+    command = [sys.executable, "-u", "-c", code, "explore"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            assert process.stdout is not None
+            assert process.stdout.readline() == "loading\n"
+            process.send_signal(signal.SIGINT)
+            assert process.communicate(timeout=20) == ("", "")
+            assert process.returncode == -signal.SIGINT
+        finally:
+            process.kill()
 
 
 def test_the_browser_opens_the_address_in_use(monkeypatch: pytest.MonkeyPatch, taken: int) -> None:

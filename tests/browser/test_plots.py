@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 from playwright.sync_api import Page, expect
 
 from tests.browser.driver import Explorer
@@ -51,6 +53,19 @@ COLOUR = f"""(name) => {{  // of the line in the column, and its distance to a c
   const own = chart.series[k].stroke(chart, k).match(/[0-9a-f]{{2}}/g).map(part => parseInt(part, 16));
   const seen = ({COLUMN})().reduce((most, pixel) => pixel[3] > most[3] ? pixel : most);
   return Math.hypot(...own.slice(0, 3).map((part, j) => part - seen[j]));
+}}"""
+
+TELL_PEAKS = """(peaks) => {
+  const told = document.createElement('trackride-peaks');
+  told.setAttribute('at', peaks);
+  document.body.append(told);
+  told.remove();
+}"""
+NO_PEAKS = '{"kN": []}'
+# How opaque the first chart is at 5.001 s and a number on its axis, 0…255
+DOT = f"""value => {{
+  const chart = ({CHARTS})()[0], [x, y] = [chart.valToPos(5.001, 'x', true), chart.valToPos(value, 'y', true)];
+  return [...chart.ctx.getImageData(x, y, 1, 1).data][3];
 }}"""
 
 
@@ -139,9 +154,31 @@ def test_the_values_at_the_cursor_lie_on_the_curves_between_the_points_that_are_
         page.wait_for_function(f"() => ({CHARTS})().length > 2 && ({WRONG})().length === 0")
 
 
+def test_peaks_between_samples_are_dots_that_the_axis_reaches(at_rest: Explorer) -> None:
+    page = at_rest.page
+    show(page, "Loads")
+    own = page.locator("trackride-peaks[at*=kN]").get_attribute("at") or ""
+    assert [name for name, _, _ in json.loads(own)["kN"]] == [
+        *(f"R{k}" for k in range(1, 7)),
+        *(f"I{k}" for k in range(1, 6)),
+    ]
+    page.evaluate(TELL_PEAKS, json.dumps({"kN": [["R2", 5.001, 600.0]]}))
+    reached = f"() => ({CHARTS})()[0].scales.y.max > 600"
+    page.wait_for_function(reached)
+    page.wait_for_function(f"() => ({DOT})(600) === 255 && ({DOT})(500) === 0")
+    name = page.locator(".uplot:visible").first.locator(".u-series.run th", has_text="R2")
+    name.click()  # hidden with its curve
+    page.wait_for_function(f"() => ({CHARTS})()[0].scales.y.max < 600")
+    name.click()
+    page.wait_for_function(reached)
+    page.evaluate(TELL_PEAKS, own)
+    page.wait_for_function(f"() => ({CHARTS})()[0].scales.y.max < 600")
+
+
 def test_curves_are_thicker_than_a_pixel_where_there_is_room(at_rest: Explorer) -> None:
     page = at_rest.page
     show(page, "Loads")
+    page.evaluate(TELL_PEAKS, NO_PEAKS)
     page.evaluate(DRAW, [["R2"], [8] * 200])
     page.wait_for_function(f"() => ({INK})() > 1.25 && ({INK})() < 2")
     page.evaluate(DRAW, [["R2"], [8] * 50 + [0, 8] * 225])
@@ -151,6 +188,7 @@ def test_curves_are_thicker_than_a_pixel_where_there_is_room(at_rest: Explorer) 
 def test_a_wheel_whose_name_is_pointed_at_is_drawn_in_front(at_rest: Explorer) -> None:
     page = at_rest.page
     show(page, "Loads")
+    page.evaluate(TELL_PEAKS, NO_PEAKS)
     page.evaluate(DRAW, [["R2", "R6"], [8] * 3])  # the later one covers the other
     page.wait_for_function(f"() => ({COLOUR})('R6') < 30 && ({COLOUR})('R2') > 60")
     page.locator(".uplot:visible").first.locator(".u-series.run th", has_text="R2").hover()
@@ -177,8 +215,8 @@ def test_thin_lines_show_from_which_stretch_the_figures_are_taken(at_rest: Explo
         return [chart.posToVal(left, 'x'), chart.posToVal(left + width, 'x')];
     }})""")
     assert len(ends) == 4
-    for start, end in ends:  # of the paper's run: the steady part
-        assert abs(start - 4.76) < 0.05
+    for start, end in ends:  # of the paper's run: its last three waves
+        assert abs(start - 4.96) < 0.05
         assert abs(end - 10) < 0.05
 
 
@@ -212,6 +250,34 @@ def test_a_wheel_hidden_in_a_plot_takes_its_baseline_along(at_rest: Explorer) ->
     page.wait_for_function(f"() => ({hidden})().join() === 'R2baseline,R2run'")
     name.click()
     page.wait_for_function(f"() => ({hidden})().length === 0")
+
+
+def clear_baseline(explorer: Explorer) -> None:
+    show(explorer.page, "Runs")
+    explorer.button("Clear").click()
+    show(explorer.page, "Loads")
+    explorer.page.wait_for_function(
+        f"() => ({CHARTS})().length === 3 && ({CHARTS})()[0].series.every(curve => curve.class !== 'baseline')"
+    )
+
+
+def test_charts_that_are_made_anew_while_a_run_plays_have_the_numbers_of_their_axes(at_rest: Explorer) -> None:
+    page = at_rest.page
+    clear_baseline(at_rest)
+    at_rest.button("▶ Play").click()
+    before = at_rest.run_number()
+    at_rest.press("Speed", "ArrowRight")
+    at_rest.wait_for_run(after=before)
+    old = page.evaluate_handle(f"() => ({CHARTS})()[0]")
+    page.locator(".trackride-status").click()  # no box has the keys
+    page.keyboard.press("b")
+    page.wait_for_function(f"old => ({CHARTS})().length === 3 && ({CHARTS})()[0] !== old", arg=old)
+    numbered = f"() => ({CHARTS})().every(({{axes}}) => axes.every(axis => axis._values?.length > 2))"
+    page.wait_for_function(numbered)
+    page.evaluate(f"() => ({CHARTS})().forEach(({{axes}}) => axes[0]._values = undefined)")  # happens now and then
+    page.wait_for_function(numbered)
+    clear_baseline(at_rest)
+    at_rest.pause()
 
 
 def test_the_other_tabs_show_spectrum_map_trust_and_equations(at_rest: Explorer) -> None:

@@ -88,6 +88,39 @@ def test_undo_and_redo_by_keys(at_rest: Explorer) -> None:
     at_rest.wait_for_value("Speed", "now > value", speed)
 
 
+def test_a_baseline_of_another_size_is_not_drawn_and_it_is_said(at_rest: Explorer) -> None:
+    page = at_rest.page
+    page.keyboard.press("b")
+    page.wait_for_function("() => '/ghost' in __viserMutable.nodePoseData")
+    at_rest.control("Preset").click()
+    page.get_by_role("option", name="Tracked robot").click()
+    expect(page.get_by_text("The baseline is of another size")).to_be_visible()
+    expect(page.locator(".u-title").first).to_have_text(
+        "Normal load of road wheels (dotted: at rest, baseline: other size)"
+    )
+    expect(page).to_have_title(re.compile("Tracked robot, sine"))
+    at_rest.control("Preset").click()
+    page.get_by_role("option", name="Paper vehicle", exact=True).click()
+    expect(page.locator(".u-title").first).to_have_text(
+        "Normal load of road wheels (dotted: at rest, dashed: baseline)"
+    )
+
+
+def test_who_is_paused_behind_an_obstacle_is_led_to_another(at_rest: Explorer) -> None:
+    page = at_rest.page
+    at_rest.fold("Road")
+    for road, time in (("half round", "now === 0"), ("step", "now > 0 && now < 0.5")):
+        before = at_rest.run_number()
+        at_rest.control("Road type").click()
+        page.get_by_role("option", name=road, exact=True).click()
+        at_rest.wait_for_run(after=before)
+        at_rest.wait_for_value("Time, s", time)
+        at_rest.press("Time, s", "End")
+        at_rest.wait_for_value("Time, s", "now === 10")
+    expect(page.get_by_text("From 10.00 s back to")).to_be_visible()
+    at_rest.fold("Road")
+
+
 def test_faults_of_a_file_are_shown_and_nothing_changes(at_rest: Explorer, tmp_path: Path) -> None:
     page = at_rest.page
     at_rest.fold("Import and presets")

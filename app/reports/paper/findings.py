@@ -7,10 +7,11 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from app.reports.paper.words import HARDLY, change_words, list_words, share_words
-from model.config.parameters import WHEEL_COUNT
+from app.reports.paper.words import HARDLY, change_words, length_words, list_words, share_words
+from model.config.config import SineRoad
+from model.config.parameters import WHEEL_COUNT, number_text
 from model.dynamics.ground import depth
-from model.paper.study import PRELOAD, Figures, PaperStudy, reach
+from model.paper.study import PRELOAD, TIGHT, Figures, PaperStudy, reach
 
 Verdict = Literal["holds", "holds within limits", "does not hold here", "cannot be compared"]
 
@@ -18,6 +19,7 @@ LITTLE = 0.05  # share of the load that counts as almost none
 NOTABLE = 0.05  # of the fundamental's amplitude: a harmonic that is worth a word
 NEAR = 0.05  # Hz by which a peak may miss the paper's 0.6 Hz, which is given to one digit
 PAPER_PEAK = 0.6  # Hz, section 5
+QUITE_LOWER = 0.5  # part of the road springs' stiffness that is quite lower
 
 
 class Finding(NamedTuple):
@@ -38,6 +40,7 @@ def findings(study: PaperStudy) -> list[Finding]:
         _traction_between_wheels,
         _counts,
         _wheels_relieved,
+        _softer,
         _separation,
         _stabilisation,
         _constant_speed,
@@ -49,6 +52,29 @@ def findings(study: PaperStudy) -> list[Finding]:
         _cheap,
     )
     return [one(study) for one in tell]
+
+
+def unmoved_reach(study: PaperStudy) -> tuple[float, float]:
+    """From which to which factor of the imaginary stiffness the rms acceleration hardly changes."""
+    reference = study.stiffness[1.0].acceleration_rms
+    return reach(study.stiffness, 1.0, lambda f: abs(f.acceleration_rms / reference - 1) <= HARDLY)
+
+
+def peak_reach(study: PaperStudy) -> tuple[float, float]:
+    """From which to which factor of the imaginary stiffness the highest peak stays where the waves excite."""
+    return reach(study.stiffness, 1.0, _follows)
+
+
+def steady_harmonic(study: PaperStudy) -> float:
+    """The strongest harmonic at exactly constant speed, as a part of the fundamental."""
+    return max(study.prescribed.harmonics[1:]) / study.prescribed.harmonics[0]
+
+
+def amplitude(study: PaperStudy) -> float:
+    """Of the study's waves, m."""
+    road = study.run.config.road
+    assert isinstance(road, SineRoad)
+    return road.amplitude
 
 
 def _empty_between_wheels(study: PaperStudy) -> Finding:
@@ -125,6 +151,28 @@ def _wheels_relieved(study: PaperStudy) -> Finding:
     )
 
 
+def _softer(study: PaperStudy) -> Finding:
+    vehicle = study.run.config.vehicle
+    imaginary, road = vehicle.imaginary_suspension.stiffness, vehicle.road_suspension.stiffness
+    assert isinstance(imaginary, float)
+    assert isinstance(road, float)
+    part, unit = imaginary / road, 1e-3
+    _, high = unmoved_reach(study)
+    last, most = _ends(study.stiffness)[1]
+    more = most.acceleration_rms / study.stiffness[1.0].acceleration_rms
+    return Finding(
+        "2.2",
+        "The imaginary springs' stiffness is quite lower than the road wheels'.",
+        "holds" if part < QUITE_LOWER else "does not hold here",
+        f"Table 1 has {unit * imaginary:g} beside {unit * road:.1f} kN/m: {share_words(part)}, both read as rates at "
+        "the wheel.",
+        f"The model needs it. Up to {high:g} times Table 1's, {share_words(high * part)} of the road wheels', the "
+        f"acceleration hardly changes. At {last:g} times, {share_words(last * part)}, imaginary wheels "
+        f"carry {share_words(most.static_share)} of the weight at rest, and the rms acceleration is {more:.1f} times "
+        "as high.",
+    )
+
+
 def _separation(study: PaperStudy) -> Finding:
     paper = study.paper.figures
     calm = [a for a in study.amplitudes if study.amplitudes[a].air == 0]
@@ -141,13 +189,16 @@ def _separation(study: PaperStudy) -> Finding:
 
 
 def _stabilisation(study: PaperStudy) -> Finding:
-    with_it, without = study.paper.figures.drift, study.unstabilised.drift
+    with_it, without, tight = (f.drift for f in (study.paper.figures, study.unstabilised, study.unstabilised_tight))
     return Finding(
         "4",
         "Baumgarte's stabilisation keeps the joints together.",
         "holds" if with_it < without else "does not hold here",
-        f"The joints are never more than {_length(with_it)} apart; without it they drift apart by {_length(without)}.",
-        "Without it the rms acceleration of the run changes by "
+        f"In the whole run of {study.unstabilised.duration:.0f} s the joints are never more than "
+        f"{length_words(with_it)} apart; without it they drift apart by {length_words(without)}.",
+        f"That drift is the integrator's errors adding up, and goes with its tolerance: {length_words(tight)} at rtol "
+        f"{number_text(TIGHT['simulation.rtol'])} and atol {number_text(TIGHT['simulation.atol'])}. Without "
+        "stabilisation the rms acceleration of the run changes by "
         f"{change_words(study.unstabilised.acceleration_rms / study.paper.figures.acceleration_rms - 1)}.",
     )
 
@@ -168,7 +219,7 @@ def _constant_speed(study: PaperStudy) -> Finding:
 def _peak(study: PaperStudy) -> Finding:
     paper = study.paper.figures
     slow, fast = reach(study.speeds, study.run.config.drive.speed_kmh, _follows)
-    _, stiff = reach(study.stiffness, 1.0, _follows)
+    _, stiff = peak_reach(study)
     beyond = next((k for k in study.stiffness if k > stiff), None)
     leaves = (
         "the stiffest tried"
@@ -206,19 +257,24 @@ def _measured_amplitude(study: PaperStudy) -> Finding:
 
 
 def _higher_harmonics(study: PaperStudy) -> Finding:
-    steady, loose = (max(f.harmonics[1:]) / f.harmonics[0] for f in (study.prescribed, study.loose))
+    steady, loose = steady_harmonic(study), max(study.loose.harmonics[1:]) / study.loose.harmonics[0]
     low, high = study.amplitudes[min(study.amplitudes)], study.paper.figures
     small = max(low.harmonics[1:]) / low.harmonics[0]
     needed = steady < NOTABLE <= loose
+    if needed:
+        cause = "Only an unsteady speed brings them here"
+    elif steady < NOTABLE:
+        cause = "The model has hardly any, whether its speed is constant or not"
+    else:
+        cause = "The model has them without it"
     return Finding(
         "5",
         "Higher harmonics in the measurement may come from a speed that was not kept constant.",
         "holds" if needed else "does not hold here",
-        f"{'Only an unsteady speed brings them here' if needed else 'The model has them at exactly constant speed'}: "
-        f"the strongest is {share_words(steady)} of the fundamental there, and {share_words(loose)} with a speed that "
-        f"swings by ±{study.loose.speed_swing:.2f} km/h.",
+        f"{cause}: the strongest is {share_words(steady)} of the fundamental at exactly constant speed, and "
+        f"{share_words(loose)} with a speed that swings by ±{study.loose.speed_swing:.2f} km/h.",
         f"They grow with the waves, from {share_words(small)} at {1e3 * min(study.amplitudes):g} mm amplitude to "
-        f"{share_words(max(high.harmonics[1:]) / high.harmonics[0])} at the paper's"
+        f"{share_words(max(high.harmonics[1:]) / high.harmonics[0])} at {1e3 * amplitude(study):g} mm"
         + (
             ", where a road wheel flies and lands again. That is another cause than the paper's, which its "
             "measurement may well have had besides."
@@ -250,7 +306,7 @@ def _share(study: PaperStudy) -> Finding:
 
 def _acceleration(study: PaperStudy) -> Finding:
     reference = study.stiffness[1.0].acceleration_rms
-    low, high = reach(study.stiffness, 1.0, lambda f: abs(f.acceleration_rms / reference - 1) <= HARDLY)
+    low, high = unmoved_reach(study)
     most = _ends(study.stiffness)[1][1]
     changes = [study.stiffness[k].acceleration_rms / reference - 1 for k in study.stiffness if low <= k <= high]
     beyond = next((k for k in study.stiffness if k > high), None)
@@ -305,10 +361,6 @@ def _ends(sweep: Mapping[float, Figures]) -> tuple[tuple[float, Figures], tuple[
 
 def _rises(values: list[float]) -> bool:
     return bool((np.diff(values) > 0).all())
-
-
-def _length(metres: float) -> str:
-    return f"{1e6 * metres:.2g} µm" if metres < 1e-4 else f"{1e3 * metres:.2g} mm"
 
 
 def _series(values: Mapping[float, Figures], factor: float, unit: str) -> str:

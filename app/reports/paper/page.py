@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from app.format.markup import Html, element, words_html
 from app.reports.drawings import Drawing
 from app.reports.html_page import document, picture
+from app.reports.paper.amplitude import amplitude_section
 from app.reports.paper.assumptions import assumptions
 from app.reports.paper.figures import PAPER_FIGURES
 from app.reports.paper.findings import Finding, findings
@@ -20,6 +21,13 @@ TITLE = "What the paper says, and what its model does"
 PAPER = (
     "Mahalingam and Padmanabhan, “Planar Multi-body Dynamics of a Tracked Vehicle using Imaginary Wheel Model for "
     "Tracks”, Defence Science Journal: its vehicle on its road, computed again."
+)
+STRETCHES = (
+    f"Which stretch of a run: amplitudes, rms, shares, highest loads, parts of the time and the swing of the speed are "
+    f"those of the samples in the last {WAVES} waves, when the start has died away. How far joints are apart, and the "
+    "time to compute, are those of the whole run. What is said to be at rest is of the pose in which a run starts. "
+    "Figs. 5 and 7 show the whole run of the preset paper, Fig. 6 its steady part. Runs beside links have a "
+    "stretch of their own, told there."
 )
 CLASSES = {
     "holds": "good",
@@ -64,13 +72,20 @@ def _page(study: PaperStudy, drawings: dict[str, tuple[Drawing, str]], links: It
             shown["harmonics"],
             element("h2", "What our assumptions do to it"),
             *assumptions(study),
+            *_amplitude(study),
             element("h2", LINKS_TITLE),
             *links,
             element("h2", "How the paper is read"),
             element("ol", *map(_erratum, range(len(ERRATA)))),
-            element("p", f"Figures of merit are taken over the last {WAVES} waves of each run.", class_="note"),
+            element("p", STRETCHES, class_="note"),
         ],
     )
+
+
+def _amplitude(study: PaperStudy) -> Iterator[Html]:
+    if study.half is not None:
+        yield element("h2", "What hangs on the amplitude")
+        yield from amplitude_section(study, study.half)
 
 
 def _summary(found: list[Finding]) -> Iterator[Html]:

@@ -18,6 +18,12 @@ def share_words(part: float) -> str:
     return f"{100 * part:.1f} %" if 0 < part < 0.0995 else f"{100 * part:.0f} %"
 
 
+def length_words(metres: float) -> str:
+    """A small length: "4.7 nm", "30 µm", "1.6 mm"."""
+    factor, unit = next((f, u) for f, u in ((1e3, "mm"), (1e6, "µm"), (1e9, "nm")) if f * metres >= 0.1 or u == "nm")
+    return f"{factor * metres:.2g} {unit}"
+
+
 def list_words(words: Sequence[str]) -> str:
     """ "a, b and c"."""
     return " and ".join(part for part in (", ".join(words[:-1]), words[-1]) if part)

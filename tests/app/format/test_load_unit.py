@@ -66,9 +66,6 @@ def test_a_baseline_is_told_in_the_unit_of_the_run_beside_it(robot: Trajectory) 
     before = {(row.figure, row.wheel): row.change for row in comparison(robot, paper)}
     assert other.change == before[LOAD_PEAK.label, "R1"]
     assert heading(LOAD_PEAK.label, [other]) == "Peak load, N"
-    plot = load_plots(robot, wheel_palette(4, 3), paper)[0]
-    [k] = [k for k, curve in enumerate(plot.curves) if (curve.label, curve.kind) == ("R1", "baseline")]
-    assert plot.values[0, k] == pytest.approx(paper.normal_load[0, 0], abs=0.05)
 
 
 def test_a_load_with_its_unit_has_no_minus_before_zero() -> None:

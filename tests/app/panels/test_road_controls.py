@@ -64,7 +64,7 @@ def test_parts_as_text_and_back() -> None:
     config = load_config("obstacles")
     text = parts_text(config.road.parts)  # type: ignore[union-attr]
     assert text.splitlines()[:2] == [
-        "random: roughness class C, seed 7, length 200 m",
+        "random: roughness class C, seed 7, length 200 m, longest wave 20 m",
         "half round: position 10 m, height 100 mm, radius 0.2 m",
     ]
     assert config.replace({"road.parts": parts_from(text, ())}).road == config.road

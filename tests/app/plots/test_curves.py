@@ -175,6 +175,35 @@ def test_a_wheel_singled_out_leaves_the_others_faded() -> None:
     assert not any(c.faded for c in ride_plots(run, PALETTE, None, wheel=7)[-1].curves)  # an imaginary wheel has none
 
 
+def test_a_peak_between_samples_is_marked_with_its_own_time_and_value() -> None:
+    run = make_run()
+    found = run.peaks
+    load, when = found.load.copy(), found.load_time.copy()
+    load[1], when[1], load[7], when[7] = 27e3, 0.4567, 29e3, 3.0  # the last one after the run's end
+    hull = {"acceleration": np.array(31.0), "acceleration_time": np.array(0.7533)}  # where samples are negative
+    run = replace(run, tracked=replace(found, load=load, load_time=when, **hull))
+    road, imaginary, share = loads(run)
+    assert len(road.peaks) == 6
+    assert (road.peaks[1].curve, road.peaks[1].time, road.peaks[1].value) == (1, 0.4567, 27.0)
+    assert road.values.max() < 27
+    assert [peak.curve for peak in imaginary.peaks] == [0, 2, 3, 4]
+    assert not share.peaks
+    [peak] = ride_plots(run, PALETTE)[0].peaks
+    assert (peak.curve, peak.time, peak.value) == (0, 0.7533, -31.0)
+
+
+def test_loads_of_a_vehicle_of_another_size_are_left_out_and_it_is_said() -> None:
+    robot, paper = make_run(load_config("robot")), make_run()
+    for run, other in ((robot, paper), (paper, robot)):
+        road, imaginary, share = loads(run, other)
+        for plot in (road, imaginary):
+            assert plot.note == "baseline: other size"
+            assert {curve.kind for curve in plot.curves} == {"run", "static"}
+        assert not share.note
+        assert "baseline" in {curve.kind for curve in share.curves}
+    assert not loads(paper, make_run(load_config("marder")))[0].note
+
+
 def test_a_run_without_samples_can_be_plotted() -> None:
     for plot in all_plots(make_run(samples=0), make_run()) + all_plots(make_run(), make_run(samples=0)):
         assert len({len(column) for column in plot.data}) == 1

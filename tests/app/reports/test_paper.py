@@ -12,11 +12,12 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from app import cli
+from app.reports.paper import amplitude
 from app.reports.paper import page as paper
 from app.reports.paper.findings import findings
 from app.reports.paper.links import lessons, record_texts
 from app.reports.paper.page import paper_files
-from app.reports.paper.words import change_words, list_words, share_words
+from app.reports.paper.words import change_words, length_words, list_words, share_words
 from model.paper import links as paper_links
 from model.paper import study as paper_study
 from model.paper.links import TRIED, Compared, Errors, LinksStudy, study_links
@@ -32,7 +33,7 @@ def study() -> PaperStudy:
         "WAVES": 4,
         "FACTORS": (0.1, 1.0, 3.0, 5.0, 10.0),
         "SPEEDS": (15.0, 20.0),
-        "AMPLITUDES": (0.01, 0.1),
+        "AMPLITUDES": (0.01, 0.05, 0.1),
         "ALTERNATIVES": {"vehicle.road_wheels.spacing": (0.583,), PRELOAD: (0.0,)},
     }
     with pytest.MonkeyPatch.context() as patch:
@@ -63,11 +64,14 @@ def found(study: PaperStudy) -> dict[str, tuple[str, str]]:
     """By a word of the statement: verdict, and what was found with its limit."""
     words = (
         "almost no pressure",
+        "quite lower",
+        "Baumgarte",
+        "leave the ground",
         "peaks at 0.6 Hz",
         "Higher harmonics",
         "share of the load",
         "hardly matters",
-        "lower",
+        "lower the load",
     )
     return {
         word: (finding.verdict, f"{finding.found} {finding.limit}")
@@ -100,6 +104,8 @@ def test_the_page_stands_alone_and_says_everything(study, files):
     assert page.count("<picture>") == len(FIGURES)
     for part in ("Imaginary wheels against links", "arms at the records&#x27; pose", "200 mm, 14.2 km/h"):
         assert part in page
+    for part in ("What hangs on the amplitude", "last 6 waves", "are those of the whole run"):
+        assert part in page
     for part in ("Wheel spacing 0.583 m", "Track preload 0 mm", "How the paper is read", "negative spring"):
         assert part in page
     assert "nan" not in re.sub(r"base64,[^\"]*", "", page)
@@ -118,7 +124,29 @@ def test_verdicts_on_the_real_runs(study):
     assert "imaginary wheels then carry the vehicle" in words
     assert verdicts["almost no pressure"][0] == "does not hold here"
     assert verdicts["Higher harmonics"][0] == "does not hold here"
-    assert verdicts["lower"][0] == "holds within limits"
+    assert verdicts["lower the load"][0] == "holds within limits"
+    verdict, words = verdicts["quite lower"]
+    assert verdict == "holds"
+    assert "Table 1 has 10 beside 75.5 kN/m: 13 %" in words
+    assert "Up to 3 times Table 1's, 40 %" in words
+    verdict, words = verdicts["Baumgarte"]
+    assert verdict == "holds"
+    assert re.search(r"In the whole run of 14 s .* apart by \S+ mm\. .*: \S+ nm at rtol 1e-9 and atol 1e-11", words)
+
+
+def test_what_hangs_on_the_amplitude(study):
+    """The paper's remark on harmonics and flying wheels, not its claims about the imaginary springs."""
+    assert study.half is not None
+    half = found(study.half)
+    assert found(study)["leave the ground"][0] == "holds"
+    assert half["leave the ground"][0] == "does not hold here"
+    assert "in the air for 0 %" in half["leave the ground"][1]
+    assert "hardly any, whether its speed is constant or not: the strongest is 3.1 %" in half["Higher harmonics"][1]
+    verdicts, remark = amplitude.lessons(study, study.half)
+    assert verdicts.startswith("One verdict hangs on the reading: “Contact needs forces")
+    assert verdicts.endswith("The other 14 stay.")
+    assert "fits the paper's remark better" in remark
+    assert amplitude.lessons(study, study) == ["All 15 verdicts are the same with either."]
 
 
 def test_sentences_follow_the_numbers(study):
@@ -131,6 +159,9 @@ def test_sentences_follow_the_numbers(study):
 
     moved = replace(study.paper, figures=replace(study.paper.figures, peak_frequency=1.2))
     assert found(replace(study, paper=moved))["peaks at 0.6 Hz"][0] == "does not hold here"
+
+    stiff = study.run.config.replace({paper_study.STIFFNESS: 60000})
+    assert found(replace(study, run=replace(study.run, config=stiff)))["quite lower"][0] == "does not hold here"
 
     light = replace(study.paper, figures=replace(study.paper.figures, static_share=0.01))
     assert found(replace(study, paper=light))["almost no pressure"][0] == "holds"
@@ -181,6 +212,7 @@ def test_links_sentences_follow_the_numbers(links):
 
 
 def test_numbers_in_words():
+    assert [length_words(x) for x in (4.7e-9, 1.5e-7, 3e-5, 1.6e-3)] == ["4.7 nm", "0.15 µm", "30 µm", "1.6 mm"]
     assert [share_words(x) for x in (0.0, 0.0072, 0.0994, 0.2, 1.0)] == ["0 %", "0.7 %", "9.9 %", "20 %", "100 %"]
     assert [change_words(x) for x in (-0.0911, 0.29, 0.0001)] == ["−9.1 %", "+29 %", "±0 %"]
     assert [list_words(list("abc"[:k])) for k in (1, 2, 3)] == ["a", "a and b", "a, b and c"]

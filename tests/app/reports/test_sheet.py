@@ -11,8 +11,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex
+from matplotlib.lines import Line2D
 from matplotlib.text import Text
 from PIL import Image
 
@@ -54,9 +56,14 @@ def words(sheet: Sheet) -> list[str]:
     return [text.get_text() for text in placed(sheet)]
 
 
-def plots(sheet: Sheet) -> dict[str, object]:
+def plots(sheet: Sheet) -> dict[str, Axes]:
     """The axes by their titles."""
     return {axes.get_title(loc="left"): axes for axes in sheet.figure.axes if axes.get_title(loc="left")}
+
+
+def curves(axes: Axes) -> list[Line2D]:
+    """Without the dots at their peaks."""
+    return [line for line in axes.get_lines() if line.get_marker() != "o"]
 
 
 def picture(colour: tuple[int, int, int] = (250, 20, 200)) -> bytes:
@@ -122,6 +129,9 @@ def test_the_ride_figures_stand_beside_the_baselines(paper, soft):
     sheet = compose(soft, paper, None, "Title")
     for run in (paper, soft):
         assert figure_text(summary(run).acceleration_rms) in words(sheet)
+        felt = summary(run).seat
+        assert felt is not None
+        assert {figure_text(value) for value in (felt.shock, felt.dose, felt.transient)} <= set(words(sheet))
         assert figure_text(run.normal_load[:, 0].max() / 1e3) in words(sheet)
     change = 100 * (soft.normal_load[:, 5].max() / paper.normal_load[:, 5].max() - 1)
     assert f"{change:+.1f}".replace("-", "−") in words(sheet)
@@ -135,7 +145,7 @@ def test_the_plots_show_both_runs_in_the_wheels_colours(paper, soft):
         "Normal load of imaginary wheels, kN",
         "Normal load of road wheels, kN",
     ]
-    lines = found["Normal load of road wheels, kN"].get_lines()
+    lines = curves(found["Normal load of road wheels, kN"])
     assert len(lines) == 12
     for k, line in enumerate(lines):
         run = paper if k < 6 else soft
@@ -155,7 +165,16 @@ def test_a_picture_that_is_given_is_shown_and_its_time_marked(paper):
     for axes in plots(sheet).values():
         assert list(axes.get_lines()[-1].get_xdata()) == [2.5, 2.5]
     unmarked = compose(paper, None, picture(), "Title")
-    assert len(plots(unmarked)["Normal load of road wheels, kN"].get_lines()) == 6
+    assert len(curves(plots(unmarked)["Normal load of road wheels, kN"])) == 6
+
+
+def test_peaks_are_dots_and_the_largest_has_its_number(paper):
+    axes = plots(compose(paper, None, picture(), "Title"))["Normal load of road wheels, kN"]
+    dots = [line for line in axes.get_lines() if line.get_marker() == "o"]
+    assert [float(dot.get_ydata()[0]) for dot in dots] == pytest.approx(paper.peaks.load[:6] / 1e3, abs=0.01)
+    assert [float(dot.get_xdata()[0]) for dot in dots] == pytest.approx(paper.peaks.load_time[:6])
+    assert [to_hex(dot.get_color()) for dot in dots] == list(wheel_palette(6, 5).road)
+    assert f"{paper.peaks.load[:6].max() / 1e3:.1f}" in [text.get_text() for text in axes.texts]
 
 
 def test_without_a_picture_the_vehicle_is_drawn_with_the_loads_it_has(paper):
@@ -233,8 +252,11 @@ def test_of_many_wheels_those_that_matter_are_told_in_type_that_can_be_read(base
     assert not any(word.startswith("Of 11") for word in words(compose(short_run({}), None, None, "")))
 
 
-def test_texts_of_a_row_do_not_run_into_each_other(paper, soft):
-    sheet = compose(soft, paper, None, "Title")
+@pytest.mark.parametrize("preset", [None, "m113", "robot"])
+def test_texts_of_a_row_do_not_run_into_each_other(paper, soft, preset):
+    """A preset's parameters, all of them unchanged against itself, stand in columns."""
+    run = soft if preset is None else simulate(load_config(preset).replace({"simulation.duration": 1.5}))
+    sheet = compose(run, paper if preset is None else run, None, "Title")
     renderer = FigureCanvasAgg(sheet.figure).get_renderer()
     rows: dict[float, list] = {}
     for text in placed(sheet):

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
-from app.runs.playback import SPEEDS, STEP, Playback
+from app.runs.playback import AHEAD, SPEEDS, STEP, Playback, time_to_look
+from model import load_config, simulate
 
 
 def test_it_plays_at_its_speed_and_starts_again_at_the_end() -> None:
@@ -58,3 +60,20 @@ def test_without_a_run_time_stands_still() -> None:
     playback.toggle()
     playback.advance(1)
     assert playback.time == 0
+
+
+def test_who_looks_at_level_road_behind_an_obstacle_is_led_to_another_that_is_chosen() -> None:
+    half_round = load_config("half_round").replace({"simulation.duration": 4})
+    behind = simulate(half_round)
+    step = simulate(half_round.replace({"road.type": "step"}))
+    time = time_to_look(step, behind, 3.5)
+    front = float(np.interp(time, step.t, step.q[:, step.system.wheel, 0].max(axis=1))) + step.system.r
+    assert step.road.uneven is not None
+    assert step.road.uneven[0] - AHEAD <= front <= step.road.uneven[0]
+    assert time_to_look(step, behind, 0.8) == 0.8  # on it
+    higher = simulate(half_round.replace({"road.height": 0.05}))
+    assert time_to_look(higher, behind, 3.5) == 3.5  # the same kind: what comes after it is looked at
+    waves = simulate(load_config("paper").replace({"simulation.duration": 4}))
+    assert time_to_look(waves, behind, 3.5) == 3.5
+    level = simulate(half_round.replace({"road.type": "flat"}))
+    assert time_to_look(level, behind, 3.5) == 3.5

@@ -165,6 +165,20 @@ def test_a_figure_is_made_with_a_picture_of_the_vehicle_or_without(rig: Rig, mon
     assert [picture is not None for picture in pictures] == [True, False]
 
 
+@pytest.mark.parametrize("what", ["picture", "figure.svg"])
+def test_a_picture_taken_while_the_run_plays_shows_the_moment_that_it_says(
+    rig: Rig, what: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(app.reports.sheet, "stamped_figure", lambda *of: b"a figure")
+    seen: list[tuple[list[float], int]] = []
+    rig.client.before_picture = lambda: seen.append((list(rig.drawing.times), rig.drawing.toggled))
+    rig.send(what, playing=True, time=0.7)
+    assert seen == [([0.7], 0)]
+    assert rig.drawing.toggled == 1  # it plays on
+    rig.send(what, time=0.7)
+    assert rig.drawing.times == [0.7]
+
+
 def test_a_transparent_picture_has_neither_sky_nor_ground(rig: Rig) -> None:
     seen: list[list[bool]] = []
     rig.client.before_picture = lambda: seen.append(list(rig.window.surroundings))

@@ -125,13 +125,13 @@ def test_the_ride_in_a_line_and_in_a_table(run: Trajectory) -> None:
     assert all(figure.name in text for figure in COMFORT_FIGURES)
     assert cells_of(text, "Both, m/s²") == [[figure_text(felt.total)], [figure_text(hull.total)]]
     assert cells_of(text, "In words") == [["fairly uncomfortable"], ["a little uncomfortable"]]
-    assert "Taken from 4.8 s on, when the start has died away" in text
+    assert "Taken over the last 3 waves, from 5.0 s on, when the start has died away" in text
     assert "Taken over the whole run" in comfort_page(make_run(PAPER.replace({"road.type": "flat"})))
 
 
 def test_the_ride_beside_a_baselines(run: Trajectory) -> None:
     faster = simulate(PAPER.replace({"drive.speed_kmh": 25}))
-    assert re.search(r'class="bad">14\.\d W', comfort_headline(faster))
+    assert re.search(r'class="bad">15\.\d W', comfort_headline(faster))
     text = comfort_page(faster, run)
     powers = [
         [figure_text(ride_comfort(of, point).absorbed_power) for of in (faster, run)]
@@ -148,6 +148,9 @@ def test_what_one_must_know_of_the_ride_figures_stands_beside_them() -> None:
     short = simulate(half_round.replace({"simulation.duration": 2}))
     assert '<span class="bad">run too short</span>' in comfort_headline(short)
     assert "The run ends before the hull has settled behind the obstacle" in comfort_page(short)
+    assert '<span class="bad">still settling</span>' in comfort_headline(short, driving=True)
+    assert "The drive has just begun" in comfort_page(short, driving=True)
+    assert "The run ends" not in comfort_page(short, driving=True)
     slow = simulate(half_round.replace({"simulation.output_rate": 20}))
     assert "uncomfortable" not in comfort_headline(slow)
     assert "20 a second" in comfort_headline(slow)

@@ -122,6 +122,12 @@ def test_a_ghost_is_there_until_it_is_taken_away_and_hidden_in_a_drive(tab: Tab)
     assert not tab.scene._handle_from_node_name["/ghost"].visible
     view.show(present)
     assert tab.scene._handle_from_node_name["/ghost"].visible
+    view.show(simulate(load_config("robot").replace({"simulation.duration": 1.0})))
+    assert view.ghost_of_other_size
+    assert not tab.scene._handle_from_node_name["/ghost"].visible
+    view.show(other)
+    assert not view.ghost_of_other_size
+    assert tab.scene._handle_from_node_name["/ghost"].visible
     view.show_ghost(None)
     assert not any(name.startswith("/ghost") for name in tab.nodes())
 

@@ -11,7 +11,15 @@ import pytest
 
 from model import load_config, simulate
 from model.analysis.energy import energy_balance
-from model.analysis.ride import imaginary_share, penetration, summary, suspension_travel, warnings, wheel_state
+from model.analysis.ride import (
+    imaginary_share,
+    motion_warnings,
+    penetration,
+    summary,
+    suspension_travel,
+    warnings,
+    wheel_state,
+)
 from model.analysis.signals import window
 from model.config.config import Config
 from model.dynamics.vehicle import build_system
@@ -318,17 +326,47 @@ def test_a_rolling_wheel_of_the_papers_run_hardly_slips():
     assert low <= states[3].normal_load <= high
 
 
+@pytest.mark.parametrize(
+    ("vehicle", "speed", "road", "enough"),
+    [
+        ("paper", 45, {}, None),
+        ("paper", 60, {}, 55),
+        ("paper", 60, {"road.longest_wave": 55}, None),
+        ("paper", 60, {"road.longest_wave": 90, "road.length": 20}, 55),
+        ("paper", 100, {}, 90),
+        ("paper", 100, {"road.longest_wave": 90}, None),
+        ("m113", 60, {}, None),
+        ("m113", 100, {}, 65),
+        ("paper", 60, {"road.type": "sum", "road.parts": [{"type": "random"}, {"type": "step"}]}, 55),
+        ("paper", 60, {"road.type": "sine"}, None),
+    ],
+)
+def test_a_random_road_without_waves_long_enough_for_the_speed(vehicle, speed, road, enough):
+    """Pitch, rms, of the paper's vehicle is 1.2, 1.3, 1.9 times as large with waves of 90 m at 50, 60, 100 km/h."""
+    changes = {"road.type": "random", "drive.speed_kmh": speed, "simulation.duration": 0.1} | road
+    said = [
+        str(each) for each in motion_warnings(simulate(load_config(vehicle).replace(changes))) if "longest" in each.what
+    ]
+    assert len(said) == (enough is not None)
+    if enough is not None:
+        assert f"Set longest_wave to {enough} m" in said[0]
+
+
 def profile(points: str) -> Config:
     return FLAT.replace({"road.type": "profile", "road.points": points})
 
 
 def test_a_profile_that_is_not_reached():
-    assert whats(standing(profile("500 0, 501 0.1, 600 0"))) == [
-        "The profile was not reached: it begins at x = 500 m, the wheels came to 1.75 m",
-        "The run ends before a wheel comes to the profile",
-    ]
-    level = whats(standing(profile("0 0, 501 0, 600 0.1")))
-    assert level == ["The run ends before a wheel comes to the profile"]
+    """One warning, whatever there is besides it."""
+    for points in ("500 0, 501 0.1, 600 0", "0 0, 500 0, 501 0.1, 600 0"):
+        (said,) = whats(standing(profile(points)))
+        assert said == (
+            "The run ends before a wheel comes to the profile: it begins at x = 499.95 m, the wheels came to 1.75 m"
+        )
+    besides = {"type": "profile", "points": "500 0, 501 0.1, 600 0"}, {"type": "random"}
+    assert whats(standing(FLAT.replace({"road.type": "sum", "road.parts": besides})))[0] == (
+        "The profile was not reached: it begins at x = 500 m, the wheels came to 1.75 m"
+    )
 
 
 def test_a_profile_that_ends_under_way():

@@ -156,7 +156,7 @@ def test_columns_by_heading_by_name_and_by_number():
         ("nan,nan\n0,0\n1,0\n", "line 1: 'nan' is no number"),
         ("0,0\n1e9,0\n", "line 2: x must be from -1e6 to 1e6 m"),
         ("0,0\n1,20\n", "line 2: steeper than 85°"),
-        ("x,y\n0,0\n", "1 points; give 2 to 200001"),
+        ("x,y\n0,0\n", "1 point; give 2 to 200001"),
         ("", "0 points"),
         ("x,y\n0,0\n1_0,0\n", "line 3: '1_0' is no number"),
         ("x;y\n0;0\n1;\n", "line 3: the cell of 'y' is empty"),

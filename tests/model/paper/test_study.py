@@ -12,7 +12,11 @@ from model.config.parameters import ASSUMED, PARAMETERS
 from model.paper import study as paper_study
 from model.paper.study import (
     ALTERNATIVES,
+    AMPLITUDE,
+    BAUMGARTE,
+    PRELOAD,
     STIFFNESS,
+    TIGHT,
     Figures,
     StudyError,
     figures_of,
@@ -79,6 +83,14 @@ def test_figures_of_a_known_signal():
     assert figures.share == pytest.approx(0.2, abs=0.01)
 
 
+def test_drift_without_stabilisation_is_the_integrators_error():
+    """It goes with the tolerance: 0.5 mm and 4.7 nm in 10 s."""
+    bare = PAPER.replace(dict.fromkeys(BAUMGARTE, 0.0))
+    coarse, fine = (simulate(bare.replace(more)).constraint_residual.max() for more in ({}, TIGHT))
+    assert 1e-4 < coarse < 2e-3
+    assert fine < 1e-7
+
+
 def test_a_statement_reaches_as_far_as_it_holds_without_a_gap(stiffness):
     sweep = {
         k: replace(stiffness[1], acceleration_rms=rms)
@@ -106,7 +118,7 @@ def test_a_run_that_ends_early_ends_the_study():
 def test_progress_goes_from_nothing_to_all(monkeypatch, stiffness):
     for name in ("FACTORS", "SPEEDS", "AMPLITUDES"):
         monkeypatch.setattr(paper_study, name, getattr(paper_study, name)[:1])
-    monkeypatch.setattr(paper_study, "ALTERNATIVES", {STIFFNESS: (2e4,)})
+    monkeypatch.setattr(paper_study, "ALTERNATIVES", {STIFFNESS: (2e4,), PRELOAD: (0.2,)})
     ran = []
     monkeypatch.setattr(paper_study, "run_figures", lambda config: ran.append(config) or stiffness[1])
     parts: list[float] = []
@@ -115,3 +127,7 @@ def test_progress_goes_from_nothing_to_all(monkeypatch, stiffness):
     assert study.alternatives[0].value == 2e4
     stiff = study.run.config.replace({"vehicle.imaginary_suspension.preload_force": 1000.0, STIFFNESS: 1e3})
     assert stiff in ran
+    assert study.half is not None
+    assert study.half.run.config.road.amplitude == 0.05
+    assert [(other.key, other.value) for other in study.half.alternatives] == [(PRELOAD, 0.2)]
+    assert study.run.config.replace({AMPLITUDE: 0.05, STIFFNESS: 1e3}) in ran

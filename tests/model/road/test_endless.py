@@ -48,6 +48,17 @@ def test_a_new_shape_takes_over_from_its_start_on_and_smoothly():
     assert_smooth(laid(after, 20.0, 50.0), 20.0, 50.0)
 
 
+def test_longer_waves_come_into_a_random_road_and_its_bumps_stay_in_their_places():
+    short, long = (
+        build_road(PAPER.replace({"road.type": "random", "road.longest_wave": longest})) for longest in (20, 90)
+    )
+    shapes = Shapes.of(short).joined(long, 50.0, same_kind=True)
+    assert_smooth(laid(shapes, 40.0, 70.0), 40.0, 70.0)
+    x = np.linspace(50.0 + BLEND, 100.0, 1001)
+    np.testing.assert_allclose(height(shapes, x), long.height(x), atol=1e-9)
+    assert np.abs(long.derivatives(x)[2] - short.derivatives(x)[2]).max() < 0.01  # 1/m: only long waves have come in
+
+
 def test_many_changes_while_the_vehicle_goes_on_join_smoothly_and_end_at_the_last():
     shapes = Shapes.of(waves(0.1))
     for k in range(30):

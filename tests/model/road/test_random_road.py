@@ -9,13 +9,14 @@ import pytest
 from scipy.signal import welch
 
 from model.road.nearest_point import FINAL_STEP, FLOOR
-from model.road.random_road import HIGHEST, LOWEST, density, highest
+from model.road.random_road import HIGHEST, density, highest
 from model.road.road import Road, build_road
 from model.simulation.simulate import simulate
 from tests.model.road.nearest import assert_nearest, centres_near
 from tests.model.support import PAPER, WHEELS
 
 RANDOM = PAPER.replace({"road.type": "random"})
+LONG = {"road.longest_wave": 90}
 TIGHT = {"simulation.rtol": 1e-8, "simulation.atol": 1e-10}
 GOLDEN = [0.003870983678091847, -0.005481771484172613, 0.01045883328991997, 0.009636026631122438, -0.004836356368343258]
 
@@ -24,20 +25,26 @@ def rough(roughness_class: str, **more: object) -> Road:
     return build_road(RANDOM.replace({"road.roughness_class": roughness_class} | more))
 
 
-@pytest.mark.parametrize(("roughness_class", "radius"), [("A", 0.32), ("E", 0.32), ("C", 0.1), ("H", 0.2)])
-def test_density_of_each_octave_is_that_of_the_class(roughness_class, radius):
-    """Within 1 dB, by Welch's method on what is driven on, from 0.05 cycles/m to where the wheel feels nothing."""
-    road = rough(roughness_class, **{"road.length": 2000.0, f"{WHEELS}.radius": radius})
+@pytest.mark.parametrize(
+    ("roughness_class", "radius", "wave"),
+    [("A", 0.32, 20), ("E", 0.32, 20), ("C", 0.1, 20), ("H", 0.2, 20), ("C", 0.32, 90), ("G", 0.32, 40)],
+)
+def test_density_of_each_octave_is_that_of_the_class(roughness_class, radius, wave):
+    """Within 1 dB, by Welch's method on what is driven on, from the longest wave to where the wheel feels nothing."""
+    changes = {"road.length": 4000.0, f"{WHEELS}.radius": radius, "road.longest_wave": wave}
+    road = rough(roughness_class, **changes)
     dx = 0.02
-    x = 20.0 + np.arange(0.0, 2000.0, dx)
-    n, measured = welch(road.height(x), 1 / dx, nperseg=int(200 / dx), window="hann")
-    last = highest(radius)
-    edges = LOWEST * 2.0 ** np.arange(np.floor(np.log2(last / LOWEST)) + 1)
+    x = 40.0 + np.arange(0.0, 4000.0, dx)
+    n, measured = welch(road.height(x), 1 / dx, nperseg=int(400 / dx), window="hann")
+    first, last = 1 / wave, highest(radius)
+    edges = first * 2.0 ** np.arange(np.floor(np.log2(last / first)) + 1)
     assert edges[-1] > last / 2
     for low, high in pairwise(edges):
         octave = (n >= low) & (n < high)
         level = 10 * np.log10(measured[octave].sum() / density(roughness_class, n[octave]).sum())
         assert abs(level) < 1.0, (low, high, level)
+    longer = (n > 0) & (n < first - 0.005)
+    assert measured[longer].max(initial=0) < 0.01 * measured[(n > first) & (n < 2 * first)].min()
     beyond = (n > last + 0.05) & (n < 2 * last)
     assert measured[beyond].max() < 0.01 * measured[(n > last / 2) & (n < last)].min()
 
@@ -53,6 +60,39 @@ def test_a_seed_gives_the_same_road_everywhere():
     x = np.array([5.0, 10.0, 50.0, 123.4, 1000.0])
     assert rough("C").height(x) == pytest.approx(GOLDEN, abs=1e-9)
     assert not np.allclose(rough("C", **{"road.seed": 2}).height(x), GOLDEN, atol=1e-3)
+
+
+def test_longer_waves_are_added_to_the_same_road():
+    """Every seed keeps its road: what comes in is longer than 20 m, and there is as much of it as ISO 8608 says."""
+    length, dx = 1000.0, 0.1
+    x = 30.0 + np.arange(0.0, length, dx)
+    lines = [np.fft.rfft(rough("D", **{"road.length": length, **more}).height(x)) for more in ({}, LONG)]
+    n = np.arange(len(lines[0])) / length
+    shorter, longer = n >= 1 / 20 - 1e-9, (n >= 1 / 90) & (n < 1 / 20 - 1e-9)
+    np.testing.assert_allclose(lines[1][shorter], lines[0][shorter], atol=1e-7)
+    assert np.abs(lines[0][longer]).max() < 1e-7
+    amplitude = np.abs(lines[1][longer]) * 2 * dx / length
+    np.testing.assert_allclose(amplitude, np.sqrt(2 * density("D", n[longer]) / length), rtol=1e-3)
+    np.testing.assert_array_equal(rough("D", **{"road.longest_wave": 20.0}).height(x), rough("D").height(x))
+
+
+@pytest.mark.parametrize(("speed", "low", "high"), [(20, 1.0, 1.2), (60, 1.15, 1.45), (100, 1.6, 2.3)])
+def test_at_speed_the_hull_pitches_on_longer_waves_too(speed, low, high):
+    """Pitch, rms, on waves up to 90 m beside that on waves up to 20 m: hence the warning (model/analysis/ride.py)."""
+    fast = RANDOM.replace({
+        "road.roughness_class": "B", "road.length": 1000, "drive.speed_kmh": speed, "simulation.duration": 30,
+        "simulation.output_rate": 50, "simulation.rtol": 1e-3,
+    })  # fmt: skip
+    runs = [simulate(fast.replace(more)) for more in ({}, LONG)]
+    pitch = [run.q[run.t > 6, run.system.chassis, 2].std() for run in runs]
+    assert low < pitch[1] / pitch[0] < high
+
+
+def test_waves_are_no_longer_than_the_road_and_run_in_gently():
+    short, long = (rough("H", **{"road.length": length, **LONG}) for length in (40.0, 400.0))
+    assert short.profile.pieces[0].nodes[0] == long.profile.pieces[0].nodes[0] == 2.75
+    assert short.profile.pieces[-1].nodes[0] == pytest.approx(2.75 + 10, abs=0.1)
+    assert long.profile.pieces[-1].nodes[0] == pytest.approx(2.75 + 22.5, abs=0.1)
 
 
 def test_it_begins_level_ahead_of_the_first_wheel_and_repeats_itself():

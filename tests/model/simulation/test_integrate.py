@@ -383,3 +383,16 @@ def test_a_run_starts_at_the_rest_pose_rolling():
     np.testing.assert_allclose(run.traction[0], 0.0, atol=1e-9)
     np.testing.assert_allclose(run.tangential_displacement[0], 0.0)
     assert run.drive_force[0] == 0.0
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_a_run_that_ends_in_its_first_step_has_its_start(integrator):
+    run = start(PAPER, integrator=integrator)
+    run.y[entries(run.system, "v_y")] = -2000.0
+    begin = run.y.copy()
+    finish(run)
+    assert run.status in REASON
+    assert run.samples_done == 1
+    np.testing.assert_array_equal(run.samples.v[0, :, 1], -2000.0)
+    np.testing.assert_array_equal(run.y, begin)
+    assert np.isfinite(run.samples.a[0]).all()
