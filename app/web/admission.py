@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from http import HTTPStatus
 from ipaddress import IPv4Address, IPv6Address, ip_address
-from urllib.parse import urlsplit
+from urllib.parse import parse_qs, urlsplit
 
 from websockets.asyncio.server import ServerConnection
 from websockets.datastructures import Headers
@@ -107,6 +107,12 @@ class Admission:
                 "Another page has tried to connect. If that page is a proxy of yours, start the explorer with "
                 "--allow-origin and its origin.",
             )
+        if self._leads_elsewhere(request.path.partition("?")[2], host):
+            return _page(
+                HTTPStatus.FORBIDDEN,
+                "Not only this explorer",
+                "This address would have the page speak with another server. Open the address that the terminal shows.",
+            )
         if self.token:
             _, first, *rest = request.path.partition("?")[0].split("/", 2)
             if not secrets.compare_digest(first.encode(errors="replace"), self.token.encode()):
@@ -122,8 +128,8 @@ class Admission:
             return _page(
                 HTTPStatus.SERVICE_UNAVAILABLE,
                 "No room for another tab",
-                f"{self.max_tabs} tabs are open, and this explorer takes no more at a time (--max-tabs). Close one, "
-                f"here or wherever it is open; this page asks again every {AGAIN} seconds.",
+                f"This explorer takes {self.max_tabs} at a time (--max-tabs), and as many are open. Close one, here or "
+                f"wherever it is; this page asks again every {AGAIN} seconds.",
                 again=True,
             )
         if "Upgrade" in request.headers:
@@ -136,6 +142,20 @@ class Admission:
             return True
         address = _address(name)
         return address is not None and (address.is_loopback or address == _address(connection.local_address[0]))
+
+    def _leads_elsewhere(self, query: str, host: str) -> bool:
+        """Whether viser's page, under this query, would listen to a server that is not ours, or play its recording."""
+        asked = parse_qs(query, keep_blank_values=True)
+        ours = {host} | {urlsplit(origin).netloc for origin in self._origins}
+        return "playbackPath" in asked or any(_place(url) not in ours for url in asked.get("websocket", ()))
+
+
+def _place(url: str) -> str:
+    """Host and port of a URL; empty where it has none."""
+    try:
+        return urlsplit(url.lower()).netloc
+    except ValueError:
+        return ""
 
 
 def _origin(text: str) -> str:

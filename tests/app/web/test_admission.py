@@ -82,6 +82,22 @@ def test_pages_of_others_cannot_connect(explore: Any, origin: str) -> None:
     assert ask(explorer, **WEBSOCKET, Origin=origin.format(port=explorer.server.get_port()))[0] == TURNED_AWAY
 
 
+@pytest.mark.parametrize(
+    "query",
+    [
+        "websocket=ws://example.org", "websocket=ws://{here}@example.org", "websocket=ws:example.org",
+        "websocket=ws:%5C%5Cexample.org", "websocket=ws://[", "websocket=ws://{here}&websocket=ws://example.org",
+        "websocket=", "playbackPath=https://example.org/scene.viser",
+    ],
+)  # fmt: skip
+def test_an_address_that_has_the_page_listen_to_others_is_turned_away(explore: Any, query: str) -> None:
+    explorer = explore(allowed_origins=["https://ride.example.org"])
+    here = f"{HERE}:{explorer.server.get_port()}"
+    assert ask(explorer, f"/?{query.format(here=here)}")[0] == TURNED_AWAY
+    for ours in (f"ws://{here}", f"ws%3A%2F%2F{here}/x", "wss://ride.example.org"):
+        assert ask(explorer, f"/?fixedDpr=1&websocket={ours}")[0] == 200
+
+
 def test_a_proxy_that_is_allowed_can_connect(explore: Any) -> None:
     explorer = explore(allowed_origins=["https://Ride.example.org:443/"])
     origin = "https://ride.example.org"
@@ -147,7 +163,7 @@ def test_beyond_the_cap_a_page_says_so_until_there_is_room(explore: Any, open_ta
     assert ask(explorer, **WEBSOCKET)[0] == NO_ROOM
     status, text = ask(explorer)
     assert status == NO_ROOM
-    assert "2 tabs are open" in text
+    assert "takes 2 at a time" in text
     assert "refresh" in text
     first.close()
     wait_for(lambda: ask(explorer)[0] == 200, "room")
