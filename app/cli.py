@@ -119,8 +119,8 @@ def run(
 ) -> None:
     """Run a configuration without a browser, and print its figures.
 
-    Exit status: 0 done; 2 bad input, nothing written; 3 diverged and 130 interrupted, the good part written. A second
-    Ctrl+C ends at once, and nothing is written.
+    Exit status: 0 done; 2 bad input, nothing written; 3 diverged or inaccurate and 130 interrupted, the good part
+    written. A second Ctrl+C ends at once, and nothing is written.
     """
     chosen = _configuration(config, changes)
     if out is not None:
@@ -153,7 +153,8 @@ def report(
 ) -> None:
     """Run a configuration and write a report: one page to read, print and pass on.
 
-    Exit status: 0 done; 2 bad input, nothing written; 3 diverged and 130 interrupted, the good part reported.
+    Exit status: 0 done; 2 bad input, nothing written; 3 diverged or inaccurate and 130 interrupted, the good part
+    reported.
     """
     chosen = _configuration(config, changes)
     _check_writable(out, PAGE_SUFFIXES)
@@ -178,7 +179,7 @@ def paper(
 
     Then lay the M113 on imaginary wheels beside runs of a track of links, and seek the wheels that come nearest.
 
-    Exit status: 0 done; 2 bad folder, 3 a run diverged, 130 interrupted: nothing written.
+    Exit status: 0 done; 2 bad folder, 3 a run diverged or was inaccurate, 130 interrupted: nothing written.
     """
     _check_folder(out)
     from app.reports.paper.links import record_texts
@@ -427,12 +428,12 @@ def _figure_table(trajectory: Trajectory, of: Summary) -> Table:
 
 
 def _leave_unless_complete(trajectory: Trajectory, out: Path | None, interrupted: bool) -> None:
-    """Say how a run ended early, or that only what came after it was interrupted, and leave with the status for it."""
+    """Say why a run is not complete, or that only what came after it was interrupted; leave with the status for it."""
     if trajectory.complete:
         if interrupted:
             _fail("Interrupted when the run was complete.", CANCELLED)
         return
-    _say(f"The run ended early: {trajectory.status}.", style="red")
+    _say(f"The run is not complete: {trajectory.status}.", style="red")
     if trajectory.advice:
         _say(trajectory.advice)
     if out is not None:

@@ -37,6 +37,7 @@ _KERNELS = (
     "dynamics/kernel.py",
     "simulation/dense.py",
     "simulation/extremes.py",
+    "simulation/flanks.py",
     "simulation/steppers.py",
     "simulation/tableaus.py",
 )

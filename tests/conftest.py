@@ -21,6 +21,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 REFERENCE = Path(__file__).parent / "reference"
+ATTACK = Path(__file__).parent / "attack"  # configurations found at random that once came to grief
 REFERENCE_CASES = sorted(path.stem for path in REFERENCE.glob("*.yaml"))
 
 

@@ -16,7 +16,12 @@ PLACES = {
     "model.compiled": {
         *("model.road.nearest_point", "model.road.table", "model.road.thinning"),
         *("model.dynamics.kernel_contact", "model.dynamics.kernel"),
-        *("model.simulation.dense", "model.simulation.extremes", "model.simulation.steppers"),
+        *(
+            "model.simulation.dense",
+            "model.simulation.extremes",
+            "model.simulation.flanks",
+            "model.simulation.steppers",
+        ),
         *("app.plots.thinning", "app.view3d.track_belt"),
     },
     "threading": {

@@ -7,7 +7,7 @@ from app.runs.drive import DriveState
 from model.simulation.trajectory import Trajectory
 
 BUSY_DELAY = 0.2  # s before a run is said to be under way; for quick ones the line would only flicker
-SLOW_START = 1.5  # s without progress: the model is being compiled
+SLOW_START = 1.5  # s that the model takes to load: it is being compiled
 FIRST_START = "compiling the model, for half a minute…"
 
 
@@ -17,12 +17,12 @@ def run_line(number: int, run: Trajectory) -> str:
     reached = float(run.t[-1]) if len(run.t) else 0.0
     speed = f"{reached / took:.0f}× real time" if took > 0 else ""
     facts = f"{reached:.3g} s in {1e3 * took:.0f} ms · {speed}"
-    return status_line(f"Run {number}", facts, "" if run.complete else "stopped early")
+    return status_line(f"Run {number}", facts, "" if run.complete else "not complete")
 
 
-def progress_line(number: int, part: float, seconds: float) -> str:
-    """HTML: how far a run is, part 0…1, after so many seconds."""
-    doing = FIRST_START if part == 0 and seconds > SLOW_START else f"computing… {100 * part:.0f} %"
+def progress_line(number: int, part: float | None, seconds: float) -> str:
+    """HTML: how far a run is, part 0…1 or None while the model is loaded, after so many seconds."""
+    doing = FIRST_START if part is None and seconds > SLOW_START else f"computing… {100 * (part or 0.0):.0f} %"
     return status_line(f"Run {number}", doing)
 
 

@@ -124,13 +124,13 @@ def _tile(row: RideRow) -> Html:
 def _early_end(run: Trajectory) -> Html:
     if run.complete:
         return Html()
-    return element("p", f"This run ended early: {run.status}. {run.advice}", class_="bad")
+    return element("p", f"This run is not complete: {run.status}. {run.advice}", class_="bad")
 
 
 def _warnings(run: Trajectory) -> Html:
     found = warnings(run)
     if not found:
-        words = "Nothing: arms, penetration and wavelength are within what the model was made for."
+        words = "Nothing: it is exact, and arms, penetration and wavelength are within what the model was made for."
         return element("p", words, class_="good")
     items = (element("li", element("b", warning.what), ". ", warning.meaning) for warning in found)
     return element("ul", *items, class_="warnings")

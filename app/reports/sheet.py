@@ -91,7 +91,7 @@ def _head(sheet: Sheet, trajectory: Trajectory, baseline: Trajectory | None, tit
 
 def _foot(sheet: Sheet, trajectory: Trajectory) -> None:
     sheet.write(MARGIN, 0.27, MODEL, 6.2, color=GREY)
-    cautions = [] if trajectory.complete else [f"the run ended early: {trajectory.status}"]
+    cautions = [] if trajectory.complete else [f"the run is not complete: {trajectory.status}"]
     cautions += [warning.what for warning in warnings(trajectory)]
     if cautions:
         sheet.write(WIDTH - MARGIN, 0.27, plain(f"Mind: {'; '.join(cautions)}", 105), 6.2, color=ALARM, ha="right")

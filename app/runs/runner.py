@@ -42,7 +42,7 @@ class Runner:
         self._request = replace(first, number=1)
         self._begun = 0  # number of the request that was begun last
         self._outcomes: dict[type, Outcome] = {}  # a refusal does not hide the run before it
-        self._progress = 0.0  # of the run under way, 0…1
+        self._progress: float | None = None  # of the run under way, 0…1; None until the model is compiled
         self._turn_began = 0.0  # when the run under way had its turn, monotonic s
         self._began_at: float | None = None  # monotonic s; None: no run under way
         self._shown_at = 0.0  # when the last run finished
@@ -89,8 +89,8 @@ class Runner:
             outcomes, self._outcomes = self._outcomes, {}
         return sorted(outcomes.values(), key=lambda outcome: outcome.request.number)
 
-    def under_way(self) -> tuple[int, float, float] | None:
-        """Number, part done (0…1) and seconds so far of the run under way, if there is one."""
+    def under_way(self) -> tuple[int, float | None, float] | None:
+        """Number, part done (0…1; None until the model is compiled) and seconds so far of the run under way, if any."""
         began = self._began_at
         return None if began is None else (self._begun, self._progress, monotonic() - began)
 
@@ -120,7 +120,7 @@ class Runner:
             self._turn_began = monotonic()
             with self._condition:  # the latest now, after waiting for the turn
                 request = self._request
-                self._begun, self._progress, self._began_at = request.number, 0.0, monotonic()
+                self._begun, self._progress, self._began_at = request.number, None, monotonic()
             outcome = self._outcome_of(request)
             self._began_at = None
         if outcome is not None:
@@ -155,7 +155,7 @@ class Runner:
             self._turn_began = monotonic()
         if self._closed or self._speed is not None:
             return True
-        if self._request.number == self._begun or self._progress >= NEARLY_DONE:
+        if self._request.number == self._begun or (self._progress or 0.0) >= NEARLY_DONE:
             return False
         now = monotonic()
         overdue = now - self._shown_at > PATIENCE

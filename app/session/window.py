@@ -158,8 +158,8 @@ class Window:
         if run.complete:
             self._notifications.forget("diverged")
         else:
-            body = f"{run.status[0].upper()}{run.status[1:]}. The plots show the run up to there. {run.advice}"
-            self._notifications.show("diverged", "The run did not come to its end", body, "orange", stays=True)
+            body = f"{run.status[0].upper()}{run.status[1:]}. The plots show the good part. {run.advice}"
+            self._notifications.show("diverged", "The run is not complete", body, "orange", stays=True)
         self._notifications.forget("refused")
 
     def show_drive(self, driven: Driven, time: float, *, settled: bool) -> None:
@@ -259,7 +259,7 @@ class Window:
     def report_failure(self, failed: Failed) -> None:
         self._notifications.show("refused", "No run", failed.message, "red")
 
-    def show_status(self, under_way: tuple[int, float, float] | None) -> None:
+    def show_status(self, under_way: tuple[int, float | None, float] | None) -> None:
         """Say which run is shown, or how far the next one has come (number, part done, seconds so far)."""
         if self._drive is not None:
             self._controls.status.content = status_line("Drive", drive_facts(self._drive))

@@ -11,11 +11,10 @@ from model.analysis.ride import RideWarning, motion_warnings, warnings
 from model.config.parameters import number_text
 from model.paper.errata import ERRATA, Erratum
 from model.road.road import Road
+from model.simulation.accuracy import APART_NOTED, ENERGY_NOTED
 from model.simulation.trajectory import Trajectory
 
-DRIFT_LIMIT = 1e-5  # m by which joints may be apart
-ENERGY_LIMIT = 0.1  # % of the energy turned over that may be unaccounted for …
-CLOSING_LIMIT = 0.5  # … % where only the powers at the samples are known
+CLOSING_LIMIT = 0.5  # % of the energy turned over that may be unaccounted for where only powers at samples are known
 FORCE_LIMIT = 1e-6  # of the weight that Newton's law may be broken by
 LEAST_SAMPLES = 2  # of a run that has an energy balance
 LEFT_OPEN = "How deep wheels sink, and whether the hull's floor meets the ground, is checked when the drive pauses."
@@ -68,9 +67,8 @@ def _energy_check(run: Trajectory, energy: EnergyBalance) -> Check:
     if energy.turned_over == 0:
         return Check(name, "–", "no energy was turned over")
     if run.energy_error is not None:
-        error = 100 * run.energy_error
         meaning = "of all rises and falls of motion and height: against the work of ground, drive and suspension"
-        return Check(name, f"{error:.1g} %", meaning, error <= ENERGY_LIMIT)
+        return Check(name, f"{100 * run.energy_error:.1g} %", meaning, run.energy_error <= ENERGY_NOTED)
     meaning = f"of {_energy(energy.turned_over)} turned over, as far as samples tell: drive against dampers and ground"
     return Check(name, f"{energy.closing_error:.2g} %", meaning, energy.closing_error <= CLOSING_LIMIT)
 
@@ -104,7 +102,7 @@ def drift(run: Trajectory) -> Check:
         "Joints apart",
         f"{1e6 * worst:.2g} µm",
         "at worst; Baumgarte's α and β pull them together",
-        worst <= DRIFT_LIMIT,
+        worst <= APART_NOTED,
     )
 
 

@@ -20,6 +20,7 @@ from model.dynamics.equilibrium import NoEquilibriumError, rest_pose
 from model.dynamics.vehicle import System
 from model.road.random_road import longest
 from model.road.road import Road, profile_end, profile_start
+from model.simulation.accuracy import APART_NOTED, ENERGY_NOTED, advice, energy_missing, joints_apart
 from model.simulation.trajectory import Trajectory, wheel_names
 
 ARM_LIMIT = np.radians(45)  # turn of a road arm beyond which the model is doubtful
@@ -261,6 +262,7 @@ def warnings(trajectory: Trajectory, road: Road | None = None) -> list[RideWarni
 def motion_warnings(trajectory: Trajectory) -> list[RideWarning]:
     """Those of the warnings that need no road."""
     return [
+        *_inexact(trajectory),
         *_arms_turned_far(trajectory),
         *_vehicle_in_the_air(trajectory),
         *_wheels_in_phase(trajectory),
@@ -296,6 +298,20 @@ def figure_warnings(
             f"Above {MOST_CREST:g} the weighted acceleration tells too little (ISO 2631-1). Use MTVV, "
             f"{felt.transient:.3g} m/s², or VDV, {felt.dose:.3g} m/s¹·⁷⁵, which tell jolts.",
         )
+
+
+def _inexact(trajectory: Trajectory) -> Iterator[RideWarning]:
+    """Of joints that came apart and energy that is not accounted for."""
+    apart = trajectory.constraint_residual
+    found = []
+    if len(apart) and apart.max() > APART_NOTED:
+        found.append(f"{joints_apart(apart.max())} (t = {trajectory.t[apart.argmax()]:.2f} s)")
+    missing = trajectory.energy_error or 0.0
+    if missing > ENERGY_NOTED:
+        found.append(energy_missing(missing))
+    if found:
+        words = " and ".join(found)
+        yield RideWarning(f"The run is not exact: {words}", advice(trajectory.config.simulation))
 
 
 def _arms_turned_far(trajectory: Trajectory) -> Iterator[RideWarning]:

@@ -17,6 +17,12 @@ from model.dynamics.vehicle import System
 FORCE_TOLERANCE = 1e-6  # N (or N m): what the rest pose must fulfil; rounding leaves up to half of it in heavy vehicles
 GOOD_ENOUGH = 1e-8  # N (or N m): the search stops here
 MAX_ITERATIONS = 200
+MOST_PITCH = np.radians(25)  # of the hull at rest: leaning further it has tipped over, and would lie on its floor
+LONGEST_STEP = 0.05  # m or rad: of the search that follows the energy downhill …
+MOST_DESCENT = 600  # … in so many steps …
+CLOSE = 1e-3  # N (or N m): … to where Newton's method takes over …
+PAST_USE = 2.0  # rad: … or where an arm has turned so far, or the hull twice MOST_PITCH
+STARTS = ((0.0, 0.0), (0.1, 0.2), (0.1, -0.2))  # m that the vehicle is lifted and rad that it leans, as it begins
 LEAST_DAMPING = 1e-10  # of the Hessian's diagonal: keeps a spring of no stiffness from dividing by zero
 
 
@@ -27,7 +33,8 @@ class NoEquilibriumError(ValueError):
 def rest_pose(system: System) -> tuple[np.ndarray, np.ndarray]:
     """Poses q (B, 3) and normal loads (W,), N, at rest on flat ground, chassis at x = 0.
 
-    Raises NoEquilibriumError when the springs cannot carry the vehicle in any pose near the design pose.
+    Raises NoEquilibriumError when the springs cannot carry the vehicle in any pose near the design pose: the hull leans
+    by MOST_PITCH at most, no arm is turned right over.
     """
     n, m, B = system.n, system.m, len(system.mass)
     rotating = np.concatenate([[0], np.arange(1, 1 + n), np.arange(1 + 2 * n, 1 + 2 * n + m)])
@@ -62,31 +69,91 @@ def rest_pose(system: System) -> tuple[np.ndarray, np.ndarray]:
     # A few millimetres into the ground, or no wheel would feel it
     z = np.zeros(size)
     z[0] = system.q_design[0, 1] - depth(system.ground, weight.sum() / len(system.wheel))
-    z, gradient, hessian, sink = _minimise(terms, z)
-    worst = np.abs(gradient).max()
-    if np.linalg.eigvalsh(hessian)[0] <= 0.0:
-        raise NoEquilibriumError(
-            "The rest pose on flat ground is unstable: the vehicle would tip or its arms fold. "
-            "Stiffen the suspension, move the wheels under the centre of mass, or lower the preload."
-        )
-    if not worst <= FORCE_TOLERANCE:
-        raise NoEquilibriumError(
-            f"No rest pose found on flat ground: {worst:.3g} N (or N m) stay unbalanced. "
-            "Stiffen the suspension or the ground, or lower the preload of the imaginary wheels."
-        )
-    if np.abs(z[1:]).max() > np.pi / 2:
-        raise NoEquilibriumError(
-            "At rest the hull or an arm would have turned right over: the suspension cannot carry "
-            "the vehicle near its design pose. Stiffen the suspension or lower the preload of the imaginary wheels."
-        )
+    found = _minimise(terms, z)
+    trouble = _trouble(found)
+    if trouble:
+        found = _let_down(terms, z)
+        trouble = _trouble(found)
+    if trouble:
+        raise NoEquilibriumError(trouble)
+    z, _, _, sink = found
     return _poses(E, z[0], np.bincount(rotating, z[1:], B)), pressed(system.ground, sink).force[system.wheel]
 
 
 Terms = Callable[[np.ndarray], tuple[float, np.ndarray, np.ndarray, np.ndarray]]
+Found = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # where, and the terms there but V
 
 
-def _minimise(terms: Terms, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Newton's method with Levenberg damping: downhill in V until the gradient vanishes. Where, and the terms there."""
+def _trouble(found: Found) -> str:
+    """Why a pose that was found is none to start from; empty where it is one."""
+    z, gradient, hessian, _ = found
+    worst = np.abs(gradient).max()
+    if abs(z[1]) > MOST_PITCH or np.linalg.eigvalsh(hessian)[0] <= 0.0:
+        return (
+            "The rest pose on flat ground is unstable: the vehicle would tip or its arms fold. "
+            "Stiffen the suspension, move the wheels under the centre of mass, or lower the preload."
+        )
+    if not worst <= FORCE_TOLERANCE:
+        return (
+            f"No rest pose found on flat ground: {worst:.3g} N (or N m) stay unbalanced. "
+            "Stiffen the suspension or the ground, or lower the preload of the imaginary wheels."
+        )
+    if np.abs(z[1:]).max() > np.pi / 2:
+        return (
+            "At rest an arm would have turned right over: the suspension cannot carry the vehicle near its design "
+            "pose. Stiffen the suspension or lower the preload of the imaginary wheels."
+        )
+    return ""
+
+
+def _let_down(terms: Terms, z: np.ndarray) -> Found:
+    """Where the vehicle comes to rest when it is let down slowly from the pose z, or leaning a little; or else why not.
+
+    Newton's method can run past a minimum or end at a saddle; this follows the energy downhill in short steps.
+    """
+    tried = []
+    for lift, pitch in STARTS:
+        start = z.copy()
+        start[:2] += lift, pitch
+        found = _minimise(terms, _descend(terms, start))
+        if not _trouble(found):
+            return found
+        tried.append(found)
+    return tried[0]
+
+
+def _descend(terms: Terms, z: np.ndarray) -> np.ndarray:
+    """Downhill in V in steps of at most LONGEST_STEP to where Newton's method can take over, or a pose past all use.
+
+    Along each eigenvector of the Hessian the step is Newton's, with the sign of the slope: it leaves saddles.
+    """
+    V, gradient, hessian, _ = terms(z)
+    longest = LONGEST_STEP
+    for _ in range(MOST_DESCENT):
+        curvature, ways = np.linalg.eigh(hessian)
+        arrived = curvature[0] > 0.0 and np.abs(gradient).max() <= CLOSE
+        if arrived or abs(z[1]) > 2 * MOST_PITCH or np.abs(z[1:]).max() > PAST_USE:
+            break
+        least = LEAST_DAMPING * np.abs(curvature).max()
+        slope = gradient @ ways
+        if curvature[0] < 0.0 and np.abs(slope[0]) < CLOSE:  # on a saddle: either way is down
+            slope[0] = CLOSE if slope[0] >= 0.0 else -CLOSE
+        step = -ways @ (slope / np.maximum(np.abs(curvature), least))
+        if curvature[0] < 0.0 or np.abs(step).max() > longest:
+            step *= longest / np.abs(step).max()
+        V_next, *rest = terms(z + step)
+        if V_next < V:
+            z, V, (gradient, hessian, _) = z + step, V_next, rest
+            longest = min(2.0 * longest, LONGEST_STEP)
+        else:
+            longest = np.abs(step).max() / 4.0
+            if longest < 1e-12:
+                break
+    return z
+
+
+def _minimise(terms: Terms, z: np.ndarray) -> Found:
+    """Newton's method with Levenberg damping: downhill in V until the gradient vanishes."""
     V, gradient, hessian, sink = terms(z)
     damping = LEAST_DAMPING
     for _ in range(MAX_ITERATIONS):

@@ -37,6 +37,15 @@ def _press(lanes, i, n_x, n_y, d, y, dy, w, wheel):
 
 
 @inlined
+def load_of(lanes, road, x, y, v_x, v_y):
+    """Normal load, N, and depth, m, of one wheel, from its centre's place and velocity."""
+    _s, _h, n_x, n_y, d = nearest(road, x, y)
+    z = lanes.r - d
+    f_n, _f_t, _xi_dot = _force(lanes.ground, z, -(v_x * n_x + v_y * n_y), 0.0, 0.0)
+    return f_n, z
+
+
+@inlined
 def _look_up(lanes, road, y, w, p, wheel):
     """What the road is like under one wheel of each chain of a block; `wheel` tells which: ROAD or IMAGINARY."""
     X, _XI, AT, THERE = wheel

@@ -195,7 +195,7 @@ def run_figures(config: Config) -> Figures:
     assert frequency is not None  # there are waves
     run = simulate(config.replace({"simulation.duration": SETTLING + (RUN_IN + WAVES) / frequency}))
     if not run.complete:
-        raise StudyError(f"A run of the study ended early: {run.status}. {run.advice}")
+        raise StudyError(f"A run of the study is not complete: {run.status}. {run.advice}")
     return figures_of(run, frequency)
 
 

@@ -51,6 +51,17 @@ class RoadTable(NamedTuple):
         """(bins,) one minimum only, for every wheel in contact."""
         return np.isneginf(self.bin[:, FLOOR])
 
+    @property
+    def valleys(self) -> tuple[float, float]:
+        """Places, m, between which a wheel in contact may have two minima; (∞, −∞) where there are none."""
+        unsafe = np.flatnonzero(~self.safe)
+        if not len(unsafe):
+            return np.inf, -np.inf
+        first, last = unsafe[0], unsafe[-1] + 1  # the first and last bin go on for ever
+        start = self.bin_start + first / self.bins_per_metre if first > 0 else -np.inf
+        ends = self.period == 0.0 and last < len(self.first_cell)
+        return start, self.bin_start + last / self.bins_per_metre if ends else np.inf
+
 
 @inlined
 def quintic(c0, c1, c2, c3, c4, c5, u):

@@ -40,3 +40,17 @@ def state_within(dense, last, h, theta, memory):
         k3, k4, k5, k6, k7 = k[2], k[3], k[4], k[5], k[6]
         for i in range(size):
             out[i] += end * rest * (d1 * first[i] + d3 * k3[i] + d4 * k4[i] + d5 * k5[i] + d6 * k6[i] + d7 * k7[i])
+
+
+@inlined
+def entry_within(dense, last, h, theta, memory, i):
+    """Entry i of that state, which is found alone."""
+    y, y_new, k = memory.y[i], memory.y_new[i], memory.k
+    rest = 1.0 - theta
+    end = h * theta * theta * rest
+    out = y + theta * theta * (3.0 - 2.0 * theta) * (y_new - y) + h * theta * rest * rest * k[0, i] - end * k[last, i]
+    d1, _, d3, d4, d5, d6, d7 = dense
+    if d1 != 0.0:
+        more = d1 * k[0, i] + d3 * k[2, i] + d4 * k[3, i] + d5 * k[4, i] + d6 * k[5, i] + d7 * k[6, i]
+        out += end * rest * more
+    return out

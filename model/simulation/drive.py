@@ -158,7 +158,7 @@ class LiveDrive:
         t = np.concatenate([times for times, _, _ in past])
         samples = Samples._make(np.concatenate(parts) for parts in zip(*(kept for _, kept, _ in past), strict=True))
         run = self._run
-        status, advice = ("complete", "") if run.status is Status.RUNNING else run.ending
+        status, advice = ("complete", "") if run.status is Status.RUNNING else run.ending(self.config.simulation)
         counts = RunStatistics(run.steps, run.rejected_steps, run.evaluations, run.smallest_step, self._seconds)
         return Trajectory(
             t=t,

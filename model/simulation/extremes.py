@@ -16,13 +16,13 @@ import numpy as np
 
 from model.compiled import compiled, inlined
 from model.dynamics.kernel import rates
-from model.dynamics.kernel_contact import contact_forces
+from model.dynamics.kernel_contact import load_of
 from model.dynamics.lanes import HEAD, LANES, SCRATCH_SIZE, STATE_SIZE, C, W, Y, blocks, state_size
 from model.dynamics.vehicle import System
-from model.simulation.dense import CUBIC, SPARE, Memory, state_within
+from model.simulation.dense import CUBIC, SPARE, Memory, entry_within, state_within
 
 PITCH, RISING = 2, 4  # entries of the flat state: θ and ẏ of the chassis
-NEAR_TOP = 0.7  # of the largest so far: a load that rises above this may come to its peak in the next step
+NEAR_TOP = 0.85  # of the largest so far: a load that rises above this may come to its peak in the next step
 LOOKS = 3  # into a step in which a wheel lands or lifts off
 SEARCHES = 8  # for a peak, at most …
 FOUND = 0.002  # … until one looks no further than this share of it above the one before
@@ -164,7 +164,7 @@ def follow(dense, last, lanes, road, work, memory, extremes, t, h):
     if more > 0.0:
         note(lanes, work, memory.y_new, a_y, extremes, t + h)
     if crossed > 0.0:
-        _look_into(dense, last, lanes, road, work, memory, extremes, t, h)
+        _look_into(dense, last, lanes, road, memory, extremes, t, h)
     if passed > 0.0:
         _seek_loads(dense, last, lanes, road, work, memory, extremes, t, h)
     if swung:
@@ -183,21 +183,15 @@ def follow(dense, last, lanes, road, work, memory, extremes, t, h):
 
 
 @compiled
-def _look_into(dense, last, lanes, road, work, memory, extremes, t, h):
+def _look_into(dense, last, lanes, road, memory, extremes, t, h):
     """Share the time of a step in which wheels land or lift off between air and ground."""
-    for look in range(LOOKS):
-        theta = (look + 0.5) / LOOKS
-        state_within(dense, last, h, theta, memory)
-        contact_forces(lanes, road, memory.between, memory.k[SPARE], work)
-        note(lanes, work, memory.between, 0.0, extremes, t + theta * h)
-        for b in range(len(work.blocks) // SCRATCH_SIZE):
-            for kind in range(2):
-                w, first = _wheels(lanes, work, extremes, b, kind)
-                for i in range(lanes.lanes):
-                    j = first + i
-                    crosses = (extremes.loads[HERE, j] > 0.0) != (extremes.loads[NEXT, j] > 0.0)
-                    if crosses and w[C.f_n + i] <= 0.0:
-                        extremes.air[j] += h / LOOKS
+    loads = extremes.loads
+    for j in range(loads.shape[1]):
+        if (loads[HERE, j] > 0.0) != (loads[NEXT, j] > 0.0):
+            for look in range(LOOKS):
+                at = t + (look + 0.5) / LOOKS * h
+                if _load_within(j, dense, last, lanes, road, memory, extremes, t, h, at) <= 0.0:
+                    extremes.air[j] += h / LOOKS
 
 
 @compiled
@@ -231,16 +225,21 @@ def _seek(j, dense, last, lanes, road, work, memory, extremes, t, h):
             x = b + (0.1 if c - b > b - a else -0.1) * (c - a)
         if x < t and not kept:
             x = t + 0.5 * min(h, c - t)
-        if x >= t:
-            state_within(dense, last, h, (x - t) / h, memory)
-            y = memory.between
+        if j >= 0:
+            if x >= t:
+                f_x = _load_within(j, dense, last, lanes, road, memory, extremes, t, h, x)
+            else:
+                f_x = _load_within(j, CUBIC, 1, lanes, road, extremes.earlier, extremes, start, t - start, x)
         else:
-            state_within(CUBIC, 1, t - start, (x - start) / (t - start), extremes.earlier)
-            y = extremes.earlier.between
-        rates(lanes, road, x, y, memory.k[SPARE], work)
-        a_y = memory.k[SPARE, RISING]
-        note(lanes, work, y, a_y, extremes, x)
-        f_x = abs(a_y) if j < 0 else _load(work, j)
+            if x >= t:
+                state_within(dense, last, h, (x - t) / h, memory)
+                y = memory.between
+            else:
+                state_within(CUBIC, 1, t - start, (x - start) / (t - start), extremes.earlier)
+                y = extremes.earlier.between
+            rates(lanes, road, x, y, memory.k[SPARE], work)
+            note(lanes, work, y, memory.k[SPARE, RISING], extremes, x)
+            f_x = abs(memory.k[SPARE, RISING])
         found = abs(f_x - f_b) < FOUND * f_b
         if f_x > f_b:
             if x > b:
@@ -257,8 +256,23 @@ def _seek(j, dense, last, lanes, road, work, memory, extremes, t, h):
 
 
 @inlined
-def _load(work, j):
-    """The load in work of the wheel in lane j of Extremes."""
+def place_of(j):
+    """Where the flat state has x of the wheel in lane j of Extremes."""
     b, within = j // (2 * LANES), j % (2 * LANES)
-    at = (W.X_w if within < LANES else W.X_v) + C.f_n + within % LANES
-    return work.blocks[b * SCRATCH_SIZE + at]
+    return HEAD + b * STATE_SIZE + (Y.x_w if within < LANES else Y.x_v) + within % LANES
+
+
+@inlined
+def _load_within(j, dense, last, lanes, road, memory, extremes, t, h, at):
+    """The load of wheel j at a time in the step of h s from t on, which is taken in where it is the largest."""
+    theta, x = (at - t) / h, place_of(j)
+    place_x = entry_within(dense, last, h, theta, memory, x)
+    place_y = entry_within(dense, last, h, theta, memory, x + LANES)
+    v_x = entry_within(dense, last, h, theta, memory, x + 3 * LANES)
+    v_y = entry_within(dense, last, h, theta, memory, x + 4 * LANES)
+    load, depth = load_of(lanes, road, place_x, place_y, v_x, v_y)
+    if load > extremes.load[j]:
+        extremes.load[j], extremes.load_at[j] = load, at
+    if depth > extremes.depth[j]:
+        extremes.depth[j], extremes.depth_at[j] = depth, at
+    return load

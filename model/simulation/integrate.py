@@ -5,17 +5,20 @@ between stretches. A run that comes to grief keeps its good part, a status and a
 from __future__ import annotations
 
 from collections.abc import Callable
+from time import perf_counter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from model.config.config import Simulation
 from model.dynamics.kernel import rates
-from model.dynamics.lanes import LANES, WORK, coordinates, in_lanes, make_work
+from model.dynamics.lanes import LANES, WORK, coordinates, in_lanes, make_work, places
 from model.dynamics.vehicle import System
 from model.road.nearest_point import RoadTable
+from model.simulation.accuracy import APART_ALLOWED, advice, joints_apart
 from model.simulation.dense import STAGES, Memory
 from model.simulation.extremes import RISING, Extremes, begin, forget, make_extremes, note
+from model.simulation.flanks import make_flanks
 from model.simulation.peaks import Peaks
 from model.simulation.steppers import (
     STEPS_PER_SECOND,
@@ -41,7 +44,8 @@ LONGEST_STEP = 0.02  # s
 FIRST_STEP = 1e-4  # s, to be tried
 STIFF_STEP = 1e-3  # s
 STIFFER = 1.05  # than at first, when wheels sink in more deeply
-SCIPY_STEPS_PER_CHUNK = 500  # so that a stop is heeded; normally these last for a second and more of simulated time
+LOOK = 0.1  # s of wall time between two looks at whether to stop, at most; see also STEPS_PER_CHUNK
+SWING = 1.0  # m that wheels may move along the hull
 RADII_PER_STEP = 0.5  # no step runs past an obstacle
 
 REASON = {
@@ -68,6 +72,10 @@ SCIPY_METHODS = {
     "scipy-bdf": "BDF",
     "scipy-lsoda": "LSODA",
 }
+
+
+class _StoppedError(Exception):
+    """The caller wants to stop in the middle of a step of one of SciPy's solvers."""
 
 
 class Integration:
@@ -98,6 +106,12 @@ class Integration:
         self._extremes = make_extremes(system)
         self._clock = make_clock(step if integrator == "rk4" else FIRST_STEP)
         self._scale = error_scale(system, rtol, atol)
+        self._flanks = make_flanks(system, 1.0 / self._scale)
+        self._place = np.append(coordinates(system), WORK)  # of the flat state, what SciPy's solvers see
+        self._wheel_x = places(system.n, system.m)[0][system.wheel, 0]
+        self._solver: OdeSolver | None = None
+        self._should_stop: Callable[[], bool] | None = None
+        self._looked = 0.0  # s of wall time, when should_stop was asked
         self._stiffness = self._stiffest_rate()
 
     @property
@@ -137,9 +151,13 @@ class Integration:
             capacity,
         )
 
-    @property
-    def ending(self) -> tuple[str, str]:
-        """For a result: "complete", "running" or how it diverged; and what to try then, else empty."""
+    def ending(self, settings: Simulation) -> tuple[str, str]:
+        """For a result: "complete", "running" or how it came to grief; and what to try then, else empty.
+
+        settings: of the run.
+        """
+        if self.status is Status.JOINTS_APART:
+            return f"inaccurate at t = {self.t:.4g} s: {joints_apart(self._clock.apart)}", advice(settings)
         if self.status in REASON:
             return f"diverged at t = {self.t:.4g} s: {REASON[self.status]}", ADVICE[self.status]
         return self.status.name.lower(), ""
@@ -150,7 +168,7 @@ class Integration:
         if y is not None:
             self.y[:] = y
         self._stiffness = self._stiffest_rate()
-        self._clock.fresh = 0
+        self._clock.fresh, self._solver = 0, None
 
     def peaks(self) -> Peaks:
         """What was largest since the start, or since `take_samples`."""
@@ -183,71 +201,97 @@ class Integration:
         tableau = ADAPTIVE.get(self.integrator)
         return min(longest, max(tableau.reach / (STIFFER * self._stiffness), STIFF_STEP)) if tableau else longest
 
-    def advance(self, t_stop: float) -> Status:
-        """Carry on until t ≥ t_stop, the end, trouble, or 5000 steps; the GIL is free meanwhile."""
+    def _valleys(self) -> tuple[float, float]:
+        """Between which places of the chassis, m, one of its wheels may bridge a valley."""
+        start, end = self.road.valleys
+        wheels = self.y[self._wheel_x] - self.y[0]
+        return start - wheels.max() - SWING, end - wheels.min() + SWING
+
+    def advance(self, t_stop: float, should_stop: Callable[[], bool] | None = None) -> Status:
+        """Carry on until t ≥ t_stop, the end, trouble, 1000 steps of a compiled stepper, which leaves the GIL free, or
+        0.1 s of wall time of one of SciPy's.
+
+        should_stop: asked where a single step of SciPy's takes longer than that; true ends it where it began.
+        """
         t_stop = min(t_stop, self.duration)
-        span = Span(float(self.rate), float(self.duration), float(t_stop), self._longest())
+        bounds = self._longest(), APART_ALLOWED, *self._valleys()
+        span = Span(float(self.rate), float(self.duration), float(t_stop), *bounds)
         problem = self.lanes, self.road, self._work, self._memory
-        kept = self.samples, self._extremes, self._clock
+        kept = self.samples, self._extremes, self._flanks, self._clock
         if self.integrator in ADAPTIVE:
-            adaptive(ADAPTIVE[self.integrator], *problem, 1.0 / self._scale, *kept, span)
+            adaptive(ADAPTIVE[self.integrator], *problem, *kept, span)
         elif self.integrator == "rk4":
             runge_kutta_4(*problem, *kept, span)
         else:
-            self._advance_scipy(t_stop)
+            self._advance_scipy(t_stop, should_stop)
         if self.status in REASON and self.samples_done == 0 and np.isfinite(self.y).all():
             # The good part of a run has its start at least.
             record(self.lanes, self.road, 0.0, self.y, self._memory.k[0], self._work, self.samples, 0)
             self._clock.recorded = 1
         return self.status
 
-    def _advance_scipy(self, t_stop: float) -> None:
+    def _advance_scipy(self, t_stop: float, should_stop: Callable[[], bool] | None) -> None:
         """Some steps of one of SciPy's solvers on the same right-hand side, for comparison."""
-        from scipy import integrate  # half a second that no other stepper needs
-
-        clock, dy = self._clock, self._memory.k[0]
-        place, state = np.append(coordinates(self.system), WORK), np.zeros_like(self.y)
+        clock = self._clock
         if clock.fresh == 0:
-            rates(self.lanes, self.road, self.t, self.y, dy, self._work)
+            rates(self.lanes, self.road, self.t, self.y, self._memory.k[0], self._work)
             begin(self.lanes, self._work, self._memory, self._extremes, self.t)
             clock.fresh = 1
-
-        def whole(y: np.ndarray) -> np.ndarray:
-            """The flat state with its empty lanes, which the solvers do not see: nothing depends on them."""
-            state[place] = y
-            return state
-
-        def right_hand_side(t: float, y: np.ndarray) -> np.ndarray:
-            rates(self.lanes, self.road, t, whole(y), dy, self._work)
-            return dy[place]
-
+        began = self._looked = perf_counter()
+        self._should_stop = should_stop
         try:
-            solver = getattr(integrate, SCIPY_METHODS[self.integrator])(
-                right_hand_side,
-                self.t,
-                self.y[place],
-                t_stop,
-                rtol=max(self.rtol, 3e-14),
-                atol=self._scale[place],
-                max_step=self._longest(),
-            )
-            for _ in range(SCIPY_STEPS_PER_CHUNK):
-                if solver.status != "running" or clock.status != Status.RUNNING:
-                    break
+            solver = self._solver = self._solver or self._make_solver()
+            while solver.t < t_stop and clock.status == Status.RUNNING:
                 before = solver.t
                 solver.step()
                 if solver.status == "failed":
                     clock.status = Status.SOLVER_FAILED
+                else:
+                    self._take_step(solver, before)
+                if perf_counter() - began > LOOK:
                     break
-                self._take_step(solver, before, whole)
-            clock.evaluations += solver.nfev
+        except _StoppedError:
+            self._solver = None
         except (ValueError, IndexError, ArithmeticError):  # how they meet a state that is no longer finite
             clock.status = Status.SOLVER_FAILED
 
-    def _take_step(self, solver: OdeSolver, before: float, whole: Callable[[np.ndarray], np.ndarray]) -> None:
+    def _make_solver(self) -> OdeSolver:
+        """The solver that the run asks for, from where it stands. It is kept from one stretch to the next: so the run
+        does not depend on how long a stretch is, in which wall time has a say.
+        """
+        from scipy import integrate  # half a second that no other stepper needs
+
+        solver: OdeSolver = getattr(integrate, SCIPY_METHODS[self.integrator])(
+            self._right_hand_side,
+            self.t,
+            self.y[self._place],
+            self.duration,
+            rtol=max(self.rtol, 3e-14),
+            atol=self._scale[self._place],
+            max_step=self._longest(),
+        )
+        return solver
+
+    def _right_hand_side(self, t: float, y: np.ndarray) -> np.ndarray:
+        """For SciPy's solvers, whose single steps may take long where they fail again and again."""
+        if self._should_stop is not None and perf_counter() - self._looked > LOOK:
+            self._looked = perf_counter()
+            if self._should_stop():
+                raise _StoppedError
+        self._clock.evaluations += 1
+        dy = self._memory.k[0]
+        rates(self.lanes, self.road, t, self._whole(y), dy, self._work)
+        return dy[self._place]
+
+    def _whole(self, y: np.ndarray) -> np.ndarray:
+        """The flat state with its empty lanes, which the solvers do not see: nothing depends on them."""
+        self._memory.y_new[self._place] = y
+        return self._memory.y_new
+
+    def _take_step(self, solver: OdeSolver, before: float) -> None:
         """Book a step of a SciPy solver, from `before` to where it stands, and record the samples in it."""
         clock, dy = self._clock, self._memory.k[0]
-        found = trouble(self.lanes, whole(solver.y))
+        found = trouble(self.lanes, self._whole(solver.y))
         if found:
             clock.status = found
             return
@@ -257,11 +301,14 @@ class Integration:
             while clock.recorded < room and clock.recorded / self.rate <= solver.t:
                 t = clock.recorded / self.rate
                 row = clock.recorded - clock.taken
-                record(self.lanes, self.road, t, whole(within(t)), dy, self._work, self.samples, row)
-                note(self.lanes, self._work, whole(within(t)), dy[RISING], self._extremes, t)
+                record(self.lanes, self.road, t, self._whole(within(t)), dy, self._work, self.samples, row)
+                if self.samples.residual[row] > APART_ALLOWED:
+                    clock.status, clock.apart = Status.JOINTS_APART, self.samples.residual[row]
+                    return
+                note(self.lanes, self._work, self._whole(within(t)), dy[RISING], self._extremes, t)
                 clock.recorded += 1
         clock.t = solver.t
-        self.y[:] = whole(solver.y)
+        self.y[:] = self._whole(solver.y)
         rates(self.lanes, self.road, self.t, self.y, self._memory.k[0], self._work)
         note(self.lanes, self._work, self.y, self._memory.k[0, RISING], self._extremes, self.t)
         clock.steps += 1

@@ -6,6 +6,7 @@ Compiled modules are imported by what runs them: Numba takes a third of a second
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -16,6 +17,7 @@ from model.config.config import Config
 from model.dynamics.equilibrium import rest_pose
 from model.dynamics.lanes import pack
 from model.dynamics.vehicle import System, build_system
+from model.simulation.accuracy import ENERGY_ALLOWED, advice, energy_missing
 from model.simulation.trajectory import RunStatistics, Trajectory
 
 if TYPE_CHECKING:
@@ -72,21 +74,26 @@ def simulate(
 ) -> Trajectory:
     """The whole run of a configuration.
 
-    on_progress: gets the part done, 0…1, after each chunk. should_stop: asked after each chunk; true ends the run.
-    A run that diverges or is stopped is returned as far as it came, with a status and advice.
+    on_progress: gets the part done, 0…1, when the model is compiled and after each chunk. should_stop: asked after each
+    chunk, and at least every 0.1 s; true ends the run.
+    A run that diverges, whose joints come apart or that is stopped is returned as far as it was good, with a status
+    and advice; one that does not account for its energy says so too.
     Raises NoEquilibriumError when the vehicle has no rest pose to start from.
     """
     from model.road.road import SPARE, build_road
+    from model.simulation import relief
     from model.simulation.integrate import Integration, Status
 
     warm_up(config.simulation.integrator)
+    if on_progress is not None:
+        on_progress(0.0)
     began = perf_counter()
     system, road = build_system(config), build_road(config)
     y, static_load = starting_state(system)
     settings = config.simulation
     run = Integration.of(settings, system, road.table, y, settings.duration)
     stopped = False
-    while not stopped and run.advance(run.t + CHUNK) is Status.RUNNING:
+    while not stopped and run.advance(run.t + CHUNK, should_stop) is Status.RUNNING:
         if on_progress is not None:
             on_progress(min(run.t / settings.duration, 1.0))
         stopped = should_stop is not None and should_stop()
@@ -96,16 +103,18 @@ def simulate(
     if on_progress is not None and run.status is Status.COMPLETE:
         on_progress(1.0)
 
-    status, advice = ("cancelled", "") if run.status is Status.RUNNING else run.ending
+    status, to_try = ("cancelled", "") if run.status is Status.RUNNING else run.ending(settings)
+    if run.status in (Status.TOO_MANY_STEPS, Status.STEP_TOO_SMALL):
+        to_try = relief.advice(config, run) or to_try
     n = run.samples_done
-    return Trajectory(
+    trajectory = Trajectory(
         t=np.arange(n) / settings.output_rate,
         **sampled_arrays(run.samples, n),
         tracked=run.peaks(),
         static_load=static_load,
         config=config,
         status=status,
-        advice=advice,
+        advice=to_try,
         statistics=RunStatistics(
             steps=run.steps,
             rejected_steps=run.rejected_steps,
@@ -114,3 +123,7 @@ def simulate(
             seconds=perf_counter() - began,
         ),
     )
+    missing = trajectory.energy_error or 0.0
+    if trajectory.complete and missing > ENERGY_ALLOWED:
+        return replace(trajectory, status=f"inaccurate: {energy_missing(missing)}", advice=advice(settings))
+    return trajectory

@@ -18,21 +18,23 @@ from model.dynamics.lanes import INT_E, WORK, places, state_size
 from model.dynamics.vehicle import System
 from model.simulation.dense import CUBIC, SPARE, state_within
 from model.simulation.extremes import begin, follow
+from model.simulation.flanks import NOBODY, before_change, changed, keep, look, release
 
 STEPS_PER_SECOND = 50_000  # of simulated time, at most; five hundred times what the paper's vehicle needs
 SMALLEST_STEP = 1e-10  # s
 MOST_FORCED = 100  # steps of this length until one is longer again
-OVER = 2e-7  # s that take an arm over the beginning of a stop
+OVER = 2e-7  # s that take an arm over the beginning of a stop, a wheel to another flank
 FASTEST = 1e3  # m/s: a body faster than this shows that the run has diverged
 FURTHEST = 1e20  # of the sum of a state: far above any vehicle's, and forces and accelerations are still finite
-STEPS_PER_CHUNK = 5_000  # so that a stop is heeded however stiff the run
+STEPS_PER_CHUNK = 1_000  # so that a stop is heeded however stiff the run: 0.05 s at worst
 POWERS = 30  # of the Jacobian, to find its largest eigenvalue to a few per cent
 NUDGE = 1e-6  # m, rad, m/s or rad/s: a change small enough for the system to be linear
 SIZE_OF_SPEED = 1.0  # m/s or rad/s, what rtol is measured against: see error_scale
 SIZE_OF_POSITION = 0.1  # m or rad
 SIZE_OF_DISPLACEMENT = 0.1  # m
 NO_LIMIT = 1e30
-LIVELY = 1.5  # m/s: where a body rises or falls faster than this, errors may be larger in proportion
+LIVELY = 1.5  # m/s: where a body rises or falls faster than this, errors must be smaller in proportion …
+MOST_CARE = 4.0  # … down to this part
 
 
 class Status(IntEnum):
@@ -45,6 +47,7 @@ class Status(IntEnum):
     TOO_MANY_STEPS = 4
     SOLVER_FAILED = 5
     RUNAWAY = 6
+    JOINTS_APART = 7
 
 
 class Samples(NamedTuple):
@@ -85,6 +88,7 @@ CLOCK = np.dtype(
         ("recorded", "i8"),  # samples
         ("taken", "i8"),  # of these, taken away to make room
         ("status", "i8"),  # a Status
+        ("apart", "f8"),  # of the joints where that ended the run, m
         ("forced", "i8"),  # steps accepted though their error was too large, since the last of a usual length
         ("fresh", "i8"),  # 1 when the derivative at y is known
     ]
@@ -94,7 +98,7 @@ CLOCK = np.dtype(
 def make_clock(step: float) -> Any:
     """What a stepper carries from step to step: a record of CLOCK's fields at t = 0. step: the first to be tried, s."""
     clock = np.recarray(1, CLOCK)
-    clock[0] = (0.0, step, np.inf, 1e-4, 0, 0, 0, 0, 0, Status.RUNNING, 0, 0)
+    clock[0] = (0.0, step, np.inf, 1e-4, 0, 0, 0, 0, 0, Status.RUNNING, 0.0, 0, 0)
     return clock[0]
 
 
@@ -105,13 +109,16 @@ class Span(NamedTuple):
     end: float  # of the run
     stop: float  # of this call
     longest: float  # step
+    apart: float  # m that joints may be apart
+    valleys_from: float  # m, of the chassis: from here …
+    valleys_to: float  # … to here a wheel may bridge a valley
 
 
 def error_scale(system: System, rtol: float, atol: float) -> np.ndarray:
     """What counts as an error of one for each entry of the flat state: atol + rtol · size.
 
     The sizes are fixed ones for each kind of state, so that the accuracy is the same wherever on the road the vehicle
-    is and however far its wheels have turned. On rough ground all of them grow with `liveliness`.
+    is and however far its wheels have turned. On rough ground `care` makes all of them smaller.
     """
     body, wheel = places(system.n, system.m)
     size = np.ones(state_size(system.n))
@@ -156,12 +163,14 @@ def trouble(lanes, y):
 
 
 @inlined
-def liveliness(lanes, y):
-    """How much larger errors may be where wheels are thrown about, since the loads are: 1 on gentle roads."""
+def care(lanes, y):
+    """How much smaller errors must be where wheels are thrown about, since what follows magnifies them: 1 on gentle
+    roads.
+    """
     fastest = LIVELY
     for b in range(len(lanes.place)):
         fastest = max(fastest, abs(y[lanes.place[b, 4]]))
-    return fastest / LIVELY
+    return min(fastest / LIVELY, MOST_CARE)
 
 
 @compiled
@@ -236,14 +245,18 @@ def _error_of(weights, h, memory, over_scale, states):
 
 
 @inlined
-def _record_step(dense, last, lanes, road, work, memory, samples, clock, rate, t_new):
-    """Record the samples of the step from clock.t to t_new, as far as there is room."""
+def _record_step(dense, last, lanes, road, work, memory, samples, clock, span, t_new):
+    """Record the samples of the step from clock.t to t_new, as far as there is room and joints hold."""
     room = len(samples.residual) + clock.taken
     h = t_new - clock.t
-    while clock.recorded < room and clock.recorded / rate <= t_new:
-        t = clock.recorded / rate
+    while clock.recorded < room and clock.recorded / span.rate <= t_new:
+        t = clock.recorded / span.rate
         state_within(dense, last, h, (t - clock.t) / h, memory)
-        record(lanes, road, t, memory.between, memory.k[SPARE], work, samples, clock.recorded - clock.taken)
+        row = clock.recorded - clock.taken
+        record(lanes, road, t, memory.between, memory.k[SPARE], work, samples, row)
+        if samples.residual[row] > span.apart:
+            clock.status, clock.apart = Status.JOINTS_APART.value, samples.residual[row]
+            break
         clock.recorded += 1
 
 
@@ -259,11 +272,13 @@ def _move_on(memory, last, clock, h, t_new, end):
 
 
 @inlined
-def _begin(lanes, road, work, memory, extremes, clock):
+def _begin(lanes, road, work, memory, extremes, flanks, clock):
     """Make sure that k[0] is the derivative at y."""
     if clock.fresh == 0:
         rates(lanes, road, clock.t, memory.y, memory.k[0], work)
         begin(lanes, work, memory, extremes, clock.t)
+        look(lanes, work, memory, flanks)
+        keep(flanks, True)
         clock.evaluations += 1
         clock.fresh = 1
 
@@ -301,17 +316,17 @@ def _before_stop(lanes, memory, h):
 
 
 @inlined
-def _step_over(lanes, road, work, memory, extremes, clock):
-    """Move on by so short a time that nothing changes but on which side of a stop an arm is."""
+def _step_over(lanes, road, work, memory, extremes, flanks, clock):
+    """Move on by so short a time that nothing changes but on which side of a stop an arm is, or a wheel's flank."""
     for i in range(len(memory.y)):
         memory.y[i] += OVER * memory.k[0, i]
     clock.t += OVER
     clock.fresh = 0
-    _begin(lanes, road, work, memory, extremes, clock)
+    _begin(lanes, road, work, memory, extremes, flanks, clock)
 
 
 @compiled
-def adaptive(tableau, lanes, road, work, memory, over_scale, samples, extremes, clock, span):
+def adaptive(tableau, lanes, road, work, memory, samples, extremes, flanks, clock, span):
     """Steps of a Runge–Kutta pair until t ≥ span.stop, the run's end, trouble or STEPS_PER_CHUNK tries."""
     states = 6 * len(lanes.place) + len(lanes.xi_place) + 1  # without empty lanes
     last = tableau.stages - 1
@@ -320,36 +335,50 @@ def adaptive(tableau, lanes, road, work, memory, over_scale, samples, extremes, 
     most_growth = 5.0
     stopped = lanes.stops.bump < np.inf or lanes.stops.rebound > -np.inf
     planned = 0.0  # step before it was cut short at a stop
-    _begin(lanes, road, work, memory, extremes, clock)
+    _begin(lanes, road, work, memory, extremes, flanks, clock)
     while clock.t < span.stop and clock.steps + clock.rejected < most_tries:
         h = min(min(clock.step, span.longest), span.end - clock.t)
         for stage in range(1, tableau.stages):
             _stage_state(tableau.stage[stage], stage, h, memory)
             rates(lanes, road, clock.t + tableau.time[stage] * h, memory.y_new, memory.k[stage], work)
         clock.evaluations += last
-        error = _error_of(tableau.error, h, memory, over_scale, states) / liveliness(lanes, memory.y)
+        error = _error_of(tableau.error, h, memory, flanks.over_scale, states) * care(lanes, memory.y)
 
         # At a jump of the forces no step is short enough; one of SMALLEST_STEP is too short to matter
-        if error <= 1.0 or (h <= SMALLEST_STEP and clock.forced < MOST_FORCED and np.isfinite(error)):
-            clock.forced = 0 if h > 1e3 * SMALLEST_STEP else clock.forced + (error > 1.0)
+        good = error <= 1.0 or (h <= SMALLEST_STEP and clock.forced < MOST_FORCED and np.isfinite(error))
+        if good:
             clock.status = trouble(lanes, memory.y_new)
             if clock.status != Status.RUNNING.value:
                 break
-            if stopped:
-                free = _before_stop(lanes, memory, h)
-                if free < h:
-                    planned = max(planned, h)
-                    clock.rejected += 1
-                    if free > OVER:
-                        clock.step = free - 0.5 * OVER
-                    else:
-                        _step_over(lanes, road, work, memory, extremes, clock)
-                        clock.step, planned = planned, 0.0
-                    continue
+        free, wheel = h, NOBODY  # of jumps that are known
+        watching = (memory.y[0] > span.valleys_from) & (memory.y[0] < span.valleys_to)
+        if watching and look(lanes, work, memory, flanks) > 0.0 and np.isfinite(error):
+            free, wheel = before_change(tableau.dense, last, lanes, road, memory, flanks, clock.t, h)
+        if good and stopped:
+            free_of_stops = _before_stop(lanes, memory, h)
+            if free_of_stops < free:
+                free, wheel = free_of_stops, NOBODY
+        if free < h and clock.t + OVER < span.end:
+            planned = max(planned, h)
+            clock.rejected += 1
+            if free > OVER:
+                clock.step = free - 0.5 * OVER
+            else:
+                _step_over(lanes, road, work, memory, extremes, flanks, clock)
+                if wheel != NOBODY:
+                    changed(flanks, wheel, clock.t)
+                clock.step, planned = planned, 0.0
+        elif good:
+            clock.forced = 0 if h > 1e3 * SMALLEST_STEP else clock.forced + (error > 1.0)
+            keep(flanks, watching)
+            if flanks.jammed[0] > 0.0:
+                release(flanks, clock.t)
             t_new = clock.t + h
             follow(tableau.dense, last, lanes, road, work, memory, extremes, clock.t, h)
-            _record_step(tableau.dense, last, lanes, road, work, memory, samples, clock, span.rate, t_new)
+            _record_step(tableau.dense, last, lanes, road, work, memory, samples, clock, span, t_new)
             _move_on(memory, last, clock, h, t_new, span.end)
+            if clock.status != Status.RUNNING.value:
+                break
             # Proportional-integral step control
             factor = 0.9 * max(error, 1e-10) ** -usual * clock.last_error**0.04
             clock.step = max(h * min(max(factor, 0.2), most_growth), planned)
@@ -373,14 +402,14 @@ def adaptive(tableau, lanes, road, work, memory, over_scale, samples, extremes, 
 
 
 @compiled
-def runge_kutta_4(lanes, road, work, memory, samples, extremes, clock, span):
+def runge_kutta_4(lanes, road, work, memory, samples, extremes, flanks, clock, span):
     """Steps of the classic method, all equally long, until t ≥ span.stop, the run's end, trouble or STEPS_PER_CHUNK."""
     size, h = len(memory.y), clock.step
     y, y_new, between, k = memory.y, memory.y_new, memory.between, memory.k
     k1, k2, k3, k4 = k[0], k[1], k[2], k[3]
     last = 4  # where the derivative at y_new stands
     most_steps = clock.steps + STEPS_PER_CHUNK
-    _begin(lanes, road, work, memory, extremes, clock)
+    _begin(lanes, road, work, memory, extremes, flanks, clock)
     while clock.t < span.stop and clock.steps < most_steps:
         t = clock.t
         for i in range(size):
@@ -401,7 +430,9 @@ def runge_kutta_4(lanes, road, work, memory, samples, extremes, clock, span):
         if clock.status != Status.RUNNING.value:
             break
         follow(CUBIC, last, lanes, road, work, memory, extremes, t, h)
-        _record_step(CUBIC, last, lanes, road, work, memory, samples, clock, span.rate, t_new)
+        _record_step(CUBIC, last, lanes, road, work, memory, samples, clock, span, t_new)
         _move_on(memory, last, clock, h, t_new, span.end)
+        if clock.status != Status.RUNNING.value:
+            break
     if clock.status == Status.RUNNING.value and clock.t >= span.end:
         clock.status = Status.COMPLETE.value

@@ -52,7 +52,7 @@ class Trajectory:
     constraint_residual: np.ndarray  # (N,) max |C(q)|, m
     static_load: np.ndarray  # (W,) f_n at the static equilibrium, N
     config: Config
-    status: str  # complete | cancelled | diverged at t = …: reason
+    status: str  # complete | cancelled | diverged at t = …: reason | inaccurate at t = …: joints | inaccurate: energy
     advice: str  # what to try when it is not complete, else empty
     statistics: RunStatistics
     work: np.ndarray | None = None  # (N,) J, done by all forces but weight and joints since the start; None: not known

@@ -187,14 +187,14 @@ def test_a_vehicle_without_rest_pose_is_bad_input(tmp_path):
     assert not out.exists()
 
 
-def test_a_diverged_run_keeps_its_good_part(tmp_path):
+def test_a_run_that_comes_to_grief_keeps_its_good_part(tmp_path):
     out = tmp_path / "run.npz"
     coarse = ("--set", "simulation.integrator=rk4", "--set", "simulation.step=0.02")
     result = trackride("run", *coarse, "--out", out)
     assert result.exit_code == 3
     run = Trajectory.load(out)
-    assert run.status.startswith("diverged at t = ")
-    assert f"The run ended early: {run.status}." in result.stderr
+    assert run.status.startswith("inaccurate at t = ")
+    assert f"The run is not complete: {run.status}." in result.stderr
     assert run.advice in result.stderr
     assert f"The good part, up to t = {run.t[-1]:g} s, is in {out}." in result.stderr
     assert "is in" not in trackride("run", *coarse).stderr
@@ -219,7 +219,7 @@ def test_ctrl_c_keeps_the_good_part(tmp_path, monkeypatch):
     run = Trajectory.load(out)
     assert run.status == "cancelled"
     assert 0 < run.t[-1] < 10
-    assert "The run ended early: cancelled." in result.stderr
+    assert "The run is not complete: cancelled." in result.stderr
     assert signal.getsignal(signal.SIGINT) is before
 
 

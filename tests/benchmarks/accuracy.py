@@ -42,9 +42,12 @@ ROUGH = ("paper", "paper_0583", "m113", "m113_rs", "marder")
 EXACT = {"simulation.rtol": 1e-9, "simulation.atol": 1e-11}
 
 
+GOAL = (0.1, 0.1, 1.0, 0.1)  # heave, mm; pitch and arms, mrad; load, rms, % of the peak
+
+
 def rough() -> None:
-    """Fifteen runs of each class: how many are off by more than 0.1 mm in heave, and the largest differences."""
-    table = Table("class", "off by more than 0.1 mm", "heave, mm", "load, rms, % of peak", "peak load, %")
+    """Fifteen runs of each class: how many miss the goal, and the largest differences."""
+    table = Table("class", "miss the goal", "heave, mm", "pitch, mrad", "arms, mrad", "load, rms, %", "peak load, %")
     for roughness_class in "EFGH":
         found = []
         for name, seed in product(ROUGH, (1, 2, 3)):
@@ -52,16 +55,21 @@ def rough() -> None:
             config = load_config(name).replace(road | {"simulation.duration": 6})
             run, right = simulate(config), simulate(config.replace(EXACT))
             load = run.normal_load - right.normal_load
+            pose = np.abs(run.q - right.q).max(axis=0)
+            turn = run.q[:, run.system.road_arms, 2] - run.q[:, [run.system.chassis], 2]
+            turn -= right.q[:, run.system.road_arms, 2] - right.q[:, [run.system.chassis], 2]
             found.append(
                 (
-                    1e3 * np.abs(run.q[:, 0, 1] - right.q[:, 0, 1]).max(),
+                    1e3 * pose[run.system.chassis, 1],
+                    1e3 * pose[run.system.chassis, 2],
+                    1e3 * np.abs(turn).max(),
                     100 * np.sqrt(np.mean(load**2, axis=0)).max() / right.peaks.load.max(),
                     100 * np.abs(run.peaks.load / right.peaks.load - 1).max(),
                 )
             )
         worst = np.max(found, axis=0)
-        off = sum(row[0] > 0.1 for row in found)
-        table.add_row(roughness_class, f"{off} of {len(found)}", *(f"{value:.2g}" for value in worst))
+        missed = sum(any(row[:4] > np.array(GOAL)) for row in np.array(found))
+        table.add_row(roughness_class, f"{missed} of {len(found)}", *(f"{value:.2g}" for value in worst))
     Console(width=140).print(table)
 
 

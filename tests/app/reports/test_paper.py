@@ -234,7 +234,7 @@ def test_ctrl_c_and_a_diverged_run_write_nothing(tmp_path, monkeypatch):
         on_progress(0.5)
 
     def diverged(on_progress):
-        raise StudyError("A run of the study ended early: diverged.")
+        raise StudyError("A run of the study is not complete: diverged.")
 
     out = tmp_path / "paper"
     for study, status in ((interrupted, 130), (diverged, 3)):

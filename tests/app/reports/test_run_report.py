@@ -94,7 +94,7 @@ def test_figures_and_checks(page, fast):
 
 @pytest.mark.usefixtures("unpainted")
 def test_warnings_or_none():
-    assert "Nothing: arms, penetration" in words(report_page(run_of(**{"road.type": "flat"}), "paper"))
+    assert "Nothing: it is exact, and arms, penetration" in words(report_page(run_of(**{"road.type": "flat"}), "paper"))
     short = words(report_page(run_of(), "paper"))
     assert "The start has died away only after" in short
     assert " s on, like all means on this page" in short
@@ -142,7 +142,7 @@ def test_every_kind_of_run_has_a_report(case):
 def test_a_run_cut_short_says_so():
     run = run_of()
     broken = replace(run, status="diverged at t = 1 s: <why>", advice="Try less.")
-    assert "ended early: diverged at t = 1 s: &lt;why&gt;. Try less." in words(report_page(broken, "paper"))
+    assert "is not complete: diverged at t = 1 s: &lt;why&gt;. Try less." in words(report_page(broken, "paper"))
 
 
 @pytest.mark.usefixtures("unpainted")
@@ -162,8 +162,8 @@ def test_a_diverged_run_is_reported_as_far_as_it_came(tmp_path):
     coarse = ("--set", "simulation.integrator=rk4", "--set", "simulation.step=0.02")
     result = trackride("report", *coarse, "--out", out)
     assert result.exit_code == 3
-    assert "The run ended early" in result.stderr
-    assert "This run ended early" in out.read_text(encoding="utf-8")
+    assert "The run is not complete" in result.stderr
+    assert "This run is not complete" in out.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(("name", "said"), [("r.npz", "must end in .html"), ("no/r.html", "No such file")])

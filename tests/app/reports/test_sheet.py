@@ -269,7 +269,8 @@ def test_texts_of_a_row_do_not_run_into_each_other(paper, soft, preset):
 def test_a_run_that_ended_early_says_so(paper):
     broken = replace(paper, status="diverged at t = 1.5 s: the step became too small")
     assert any(
-        "Mind: the run ended early: diverged at t = 1.5 s" in word for word in words(compose(broken, None, None, ""))
+        "Mind: the run is not complete: diverged at t = 1.5 s" in word
+        for word in words(compose(broken, None, None, ""))
     )
     assert not any("Mind" in word for word in words(compose(paper, None, None, "")))
 

@@ -186,7 +186,7 @@ def test_a_diverged_run_shows_its_good_part_and_advice(explore: Any, open_tab: A
     tab: Tab = open_tab(explore(run=run))
     wait_for(lambda: tab.shows_run(1))
     tab.use("Speed, km/h", 60)
-    wait_for(lambda: "stopped early" in tab.status)
+    wait_for(lambda: "not complete" in tab.status)
     assert "0.5 s in" in tab.status
     notice = wait_for(lambda: tab.notifications, "a notification")[-1]
     assert "t = 0.5 s" in notice["body"]

@@ -111,7 +111,7 @@ def test_every_assumption_about_the_papers_vehicle_has_an_alternative():
 
 def test_a_run_that_ends_early_ends_the_study():
     coarse = PAPER.replace({"simulation.integrator": "rk4", "simulation.step": 0.02})
-    with pytest.raises(StudyError, match="ended early: diverged at t = "):
+    with pytest.raises(StudyError, match="not complete: inaccurate at t = "):
         run_figures(coarse)
 
 

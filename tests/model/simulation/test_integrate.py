@@ -245,9 +245,8 @@ def assert_good_part(run) -> None:  # type: ignore[no-untyped-def]
 def test_too_long_a_fixed_step_gives_the_good_part_and_says_why(config, step):
     run = simulate(config.replace({"simulation.integrator": "rk4", "simulation.step": step}))
     assert not run.complete
-    assert run.status.startswith("diverged at t = ")
-    assert any(run.status.endswith(f": {reason}") for reason in REASON.values())
-    assert "shorten the step" in run.advice
+    assert run.status.startswith(("diverged at t = ", "inaccurate at t = "))
+    assert "horten the step" in run.advice
     assert 0 < len(run.t) < 2001
     assert run.t[-1] <= float(run.status.split()[4]) + step
     assert_good_part(run)
@@ -301,7 +300,7 @@ def test_a_runaway_is_stopped(integrator):
 
 
 def test_every_end_has_a_reason_and_advice():
-    assert set(REASON) == set(ADVICE) == set(Status) - {Status.RUNNING, Status.COMPLETE}
+    assert set(REASON) == set(ADVICE) == set(Status) - {Status.RUNNING, Status.COMPLETE, Status.JOINTS_APART}
     assert all(text.endswith(".") for text in ADVICE.values())
 
 
@@ -312,15 +311,17 @@ def test_every_end_has_a_reason_and_advice():
 def test_progress_grows_from_nothing_to_one(integrator):
     seen: list[float] = []
     simulate(FLAT.replace({"simulation.integrator": integrator, "simulation.duration": 5}), seen.append)
-    assert len(seen) >= 5
+    assert len(seen) >= 6
     assert seen == sorted(seen)
-    assert 0.0 < seen[0] < 0.5
+    assert seen[0] == 0.0  # the model is compiled
+    assert 0.0 < seen[1] < 0.5
     assert seen[-1] == 1.0
     assert seen.count(1.0) == 1
 
 
 @pytest.mark.parametrize("integrator", [*COMPILED, "scipy-rk45"])
-def test_a_run_can_be_stopped_between_chunks(integrator):
+def test_a_run_can_be_stopped_between_chunks(integrator, monkeypatch):
+    monkeypatch.setattr(integrate, "LOOK", 60.0)  # else a busy machine makes more chunks
     asked = 0
 
     def third_time() -> bool:
@@ -343,19 +344,20 @@ def test_a_stiff_run_is_stopped_as_soon():
     stiff = {"contact.tangential_damping": 1e8, f"{WHEELS}.mass": 1.0}
     run = simulate(PAPER.replace(stiff), should_stop=lambda: True)
     assert run.status == "cancelled"
-    assert run.statistics.steps + run.statistics.rejected_steps <= 5_000
+    assert run.statistics.steps + run.statistics.rejected_steps <= 1_000
 
 
 @pytest.mark.parametrize("integrator", SCIPY_METHODS)
 def test_scipys_solvers_look_up_as_well(integrator, monkeypatch):
-    """However many steps they take for a stretch; then they go on where they were, and have a bound."""
-    monkeypatch.setattr(integrate, "SCIPY_STEPS_PER_CHUNK", 20)
+    """After so much wall time; then they go on as if nothing had been, and have a bound."""
+    whole = finish(start(FLAT, integrator=integrator))
+    np.testing.assert_allclose(whole.samples.q, finish(start(FLAT)).samples.q, atol=1e-4)
+    monkeypatch.setattr(integrate, "LOOK", 0.0)
     run = start(FLAT, integrator=integrator)
     assert run.advance(0.5) is Status.RUNNING
-    assert run.steps == 20
-    whole = finish(start(FLAT)).samples
+    assert run.steps == 1
     assert finish(run).status is Status.COMPLETE
-    np.testing.assert_allclose(run.samples.q, whole.q, atol=1e-4)
+    np.testing.assert_array_equal(run.samples.q, whole.samples.q)
     monkeypatch.setattr(integrate, "STEPS_PER_SECOND", 20)
     assert finish(start(FLAT, integrator=integrator)).status is Status.TOO_MANY_STEPS
 
@@ -383,6 +385,19 @@ def test_a_run_starts_at_the_rest_pose_rolling():
     np.testing.assert_allclose(run.traction[0], 0.0, atol=1e-9)
     np.testing.assert_allclose(run.tangential_displacement[0], 0.0)
     assert run.drive_force[0] == 0.0
+
+
+@pytest.mark.parametrize("integrator", SCIPY_METHODS)
+def test_scipys_solvers_look_up_inside_a_step(integrator, monkeypatch):
+    """A step that takes longer than a look is given up, and the run stands where it stood."""
+    monkeypatch.setattr(integrate, "LOOK", 0.0)
+    run = start(FLAT, integrator=integrator)
+    run.advance(0.5)
+    stood, state = run.t, run.y.copy()
+    assert run.advance(0.5, should_stop=lambda: True) is Status.RUNNING
+    assert run.t == stood > 0.0
+    np.testing.assert_array_equal(run.y, state)
+    assert finish(run).status is Status.COMPLETE
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
