@@ -321,8 +321,10 @@ if (!window.trackridePlots) {
   const tell = () => {  // in the hidden box beside the page's keys, which is not there while that panel is put away
     const box = document.querySelector('[data-trackride="page"] + div + div input');
     if (!box || box.value === front) return;
-    Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value').set.call(box, front);  // past React's own
-    box.dispatchEvent(new Event('input', {bubbles: true}));
+    (window.trackrideInTurn ?? setTimeout)(() => {
+      Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value').set.call(box, front);  // past React's own
+      box.dispatchEvent(new Event('input', {bubbles: true}));
+    });
   };
   const tabs = new ResizeObserver(() => {  // a tab behind is 0 px wide
     const seen = [...document.querySelectorAll('trackride-tab')].filter((tab) => tab.offsetWidth);

@@ -66,13 +66,13 @@ def style(css: str, **attributes: str | None) -> Html:
     return element("style", Html(css), **attributes)
 
 
-def running(script: str) -> Html:
+def running(script: str, **data: str) -> Html:
     """Something invisible that runs a script of our own once it is on the page.
 
     The browser runs no <script> that is put into a page later, as viser does, but it tells a picture that it cannot be
-    loaded.
+    loaded. data: data_name=text, which the script finds as this.dataset.name.
     """
-    return element("img", hidden="", src="data:,", onerror=script)
+    return element("img", hidden="", src="data:,", onerror=script, **data)
 
 
 def page(*content: Content) -> str:

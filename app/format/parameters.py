@@ -6,6 +6,7 @@ A value is shown in the friendlier unit of the parameter table (`shown_unit`); a
 from __future__ import annotations
 
 import math
+import re
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,8 @@ from model.config.config import Config
 from model.config.parameters import PARAMETER, Parameter, Value, number_text
 from model.config.profile_points import points
 from model.config.validation import Fault
+
+NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.ASCII | re.IGNORECASE)  # float() also takes 1_0
 
 
 def shown_label(parameter: Parameter) -> str:
@@ -28,7 +31,7 @@ def hint(parameter: Parameter) -> str:
     if parameter.growth:
         parts.append(f"When it grows: {parameter.growth[0].lower()}{parameter.growth[1:]}")
     if parameter.per_wheel:
-        parts.append("One value for all road wheels.")
+        parts.append("One value for all road wheels, or one for each with commas between, front first.")
     facts = [f"Symbol {parameter.symbol}"] if parameter.symbol else []
     facts += [f"unit {parameter.shown_unit}"] if parameter.shown_unit else []
     facts += [f"from {parameter.source}"] if parameter.source.startswith(("Table", "section")) else []
@@ -86,11 +89,10 @@ def file_value(parameter: Parameter, text: str) -> Any:
     """What a typed text means; the text itself where it means nothing, for the configuration to refuse."""
     if not text.strip():
         return None
-    try:
-        numbers = tuple(float(part) for part in text.strip(" ,;[]()").replace(";", ",").split(","))
-    except ValueError:
+    parts = [part.strip() for part in text.strip(" ,;[]()").replace(";", ",").split(",")]
+    if not all(NUMBER.fullmatch(part) for part in parts):
         return text
-    values = tuple(file_number(parameter, number) for number in numbers)
+    values = tuple(file_number(parameter, float(part)) for part in parts)
     return values if parameter.kind == "list" or len(values) > 1 else values[0]
 
 
@@ -115,8 +117,14 @@ def refusal(fault: Fault, given: Any, config: Config) -> str:
     if fault.path not in PARAMETER:
         return f"{fault}."
     parameter = config.parameter(fault.path)
-    if parameter.kind in ("points", "parts"):
+    out_of_range = fault.message.startswith(f"{fault.value} is not allowed")
+    if parameter.kind in ("points", "parts") or not out_of_range:
         return f"{parameter.label}: {fault.message}."
+    if fault.value == "nothing":
+        return f"{parameter.label}: a value is needed. Give {allowed(parameter)}."
+    if isinstance(given, tuple) and all(isinstance(number, int | float) for number in given):
+        what = f"{shown_text(parameter, given)} {parameter.shown_unit}".strip()
+        return f"{parameter.label}: {what} is not allowed. Give {allowed(parameter)}, for each road wheel."
     if not isinstance(given, int | float) or not math.isfinite(given):
         return f"{parameter.label}: {fault.value} is not allowed. Give {allowed(parameter)}."
     if parameter.low <= given <= parameter.high:

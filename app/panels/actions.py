@@ -14,7 +14,13 @@ class Actions(Protocol):
     # Parameters and road
 
     def change(self, key: str, value: Any) -> None:
-        """Give a parameter another value, as in a file."""
+        """Give a parameter another value, as in a file. The user may still be moving its control."""
+
+    def enter(self, key: str, value: Any) -> None:
+        """Give a parameter a value that was typed as text: it is there as a whole, and its control may follow."""
+
+    def refuse_text(self, text: str) -> None:
+        """Say that a typed text is no value."""
 
     def load(self, preset: str) -> None:
         """Take a preset, by its name."""
@@ -138,6 +144,12 @@ class Actions(Protocol):
 
     def set_in_front(self, tabs: frozenset[str]) -> None:
         """Only the tabs that are seen keep up with a drag."""
+
+    def recollect(self, visit: str) -> None:
+        """Go on where the tab was before its page was loaded anew: `visit` is what it has stored.
+
+        "null": a new tab, which goes on where the browser was last.
+        """
 
     def prefer_dark(self, dark: bool) -> None:
         """The browser is set to this look."""

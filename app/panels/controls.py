@@ -14,7 +14,7 @@ from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from model.config.parameters import Parameter
 
-PRECISION = 4  # decimals that a box takes and shows
+PRECISION = 4  # decimals that a box for numbers takes by itself; more of them come as text
 FINEST_STEP = 10**-PRECISION  # parameters that need finer ones are typed as text: 1e-6
 ONE_EACH = " Here one for each road wheel, front first."
 IMAGINARY = "vehicle.imaginary_"
@@ -49,16 +49,18 @@ class Control:
         else:
             first = shown_number(parameter, value[0] if isinstance(value, tuple) else value)
             if parameter.what_if:
-                low, high, step = self._range(first)
+                self._reach = self._range(first)  # of the slider, before it is widened
+                low, high, step = self._reach
                 self._one = gui.add_slider(label, min(low, first), max(high, first), step, first, hint=help_text)
             else:
                 step = shown_number(parameter, parameter.step)
                 self._one = gui.add_number(label, float(first), step=float(step), hint=help_text)
             self._one.precision = max(PRECISION, _decimals(first))
-        self._one.on_update(by_user(lambda event: actions.change(parameter.key, self.value), actions.fail))
+        ask = actions.enter if _typed(parameter) else actions.change
+        self._one.on_update(by_user(lambda event: ask(parameter.key, self.value), actions.fail))
         if parameter.per_wheel:
             self._list = gui.add_text(label, "", hint=help_text + ONE_EACH)
-            self._list.on_update(by_user(lambda event: actions.change(parameter.key, self.listed_value), actions.fail))
+            self._list.on_update(by_user(lambda event: actions.enter(parameter.key, self.listed_value), actions.fail))
             self.show(value)
 
     @property
@@ -76,12 +78,10 @@ class Control:
         """The values in the box for a list, as in a file."""
         return None if self._list is None else file_value(self.parameter, self._list.value)
 
-    def was_moved_to_end(self, requested: Any) -> bool:
-        """Whether the page moved the slider to its end because the requested value lies beyond it."""
-        if not self.parameter.what_if or not isinstance(requested, int | float):
-            return False
-        value, shown = self._one.value, shown_number(self.parameter, requested)
-        return value == self._one.max < shown or value == self._one.min > shown
+    @property
+    def box(self) -> str:
+        """viser's name of the slider or box for one value; on the page its label has it."""
+        return self._one._impl.uuid
 
     def show(self, value: Any) -> None:
         """Show this value, unless the control shows it already."""
@@ -90,6 +90,7 @@ class Control:
             self._list.visible, self._one.visible = as_list, not as_list
             if as_list and self.listed_value != value:
                 self._list.value = shown_text(self.parameter, value)
+        self._fit(value)
         if as_list or self.value == value:
             return
         if _typed(self.parameter):
@@ -101,10 +102,17 @@ class Control:
         else:
             shown = shown_number(self.parameter, value)
             self._one.precision = max(PRECISION, _decimals(shown))
-            if self.parameter.what_if and not self._one.min <= shown <= self._one.max:
-                self._one.min, self._one.max, self._one.step = self._range(shown)
-            self.widen(value)
             self._one.value = shown
+
+    def _fit(self, value: Any) -> None:
+        """Give the slider its own range again, or that of vehicles like the one with this value, widened if need be."""
+        if not self.parameter.what_if or isinstance(value, tuple):
+            return
+        shown = shown_number(self.parameter, value)
+        if not self._reach[0] <= shown <= self._reach[1]:
+            self._reach = self._range(shown)
+        low, high, step = self._reach
+        self._one.min, self._one.max, self._one.step = min(low, shown), max(high, shown), step
 
     def _range(self, shown: float) -> tuple[float, float, float]:
         """Ends and step of the slider for a value, as shown."""

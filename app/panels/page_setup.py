@@ -10,6 +10,7 @@ import viser
 from app.format.assets import asset
 from app.format.markup import element, joined, running, style
 from app.format.parameters import choice_words
+from app.panels.controls import PRECISION
 from model.config.config import Config, SumRoad
 
 BRAND = (28, 108, 178)
@@ -27,23 +28,42 @@ class PageSigns(NamedTuple):
     in_view: viser.GuiCheckboxHandle  # ticked while the page is in view
     in_front: viser.GuiTextHandle  # names of the tabs in front, with commas between, once the page shows the panels
     night: viser.GuiCheckboxHandle  # ticked where the browser is set to dark pages
+    visit: viser.GuiTextHandle  # what this tab had stored when its page was loaded anew; "null": nothing
+    typed: viser.GuiTextHandle  # JSON: viser's name of a box for numbers, what was typed there and is none, a count
+    store: viser.GuiHtmlHandle  # what runs there stores something in the tab
     title: viser.GuiHtmlHandle  # see title_html
 
 
 def add_page(gui: viser.GuiApi) -> PageSigns:
     """Add rules and script of the page, and the controls by which it tells something.
 
-    page.js sets the two checkboxes, plots.js writes which tabs are in front.
+    page.js sets all but the tabs in front, which plots.js writes.
     """
     title = gui.add_html("")
     page = gui.add_html("")
     in_view = gui.add_checkbox("In view", True)
     in_front = gui.add_text("Tabs in front", "")
     night = gui.add_checkbox("Dark pages", False)
-    rules = style(asset("page.css"), id="trackride-style", data_in_view=in_view._impl.uuid, data_night=night._impl.uuid)
+    visit = gui.add_text("Visit", "")
+    typed = gui.add_text("Typed", "")
+    store = gui.add_html("")
+    rules = style(
+        asset("page.css"),
+        id="trackride-style",
+        data_in_view=in_view._impl.uuid,
+        data_night=night._impl.uuid,
+        data_visit=visit._impl.uuid,
+        data_typed=typed._impl.uuid,
+        data_decimals=str(PRECISION),
+    )
     intro = element("p", INTRO, class_="trackride-intro")
     page.content = str(joined((running(asset("page.js")), intro, rules)))
-    return PageSigns(in_view, in_front, night, title)
+    return PageSigns(in_view, in_front, night, visit, typed, store, title)
+
+
+def store_visit(signs: PageSigns, state: str) -> None:
+    """Have the tab store a text, which it tells when its page is loaded anew. Other tabs do not see it."""
+    signs.store.content = str(running("sessionStorage.setItem('trackride', this.dataset.state)", data_state=state))
 
 
 def title_html(config: Config) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 
 import viser
 
+from app.format.parameters import file_value
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.panels.controls import IMAGINARY, IMAGINARY_SWITCH, Control
@@ -78,6 +79,14 @@ class ParameterPanel:
         """The name of the preset with this title. Raises KeyError."""
         names = {title: name for name, title in self._titles.items()}
         return names[title]
+
+    def enter(self, box: str, text: str) -> None:
+        """Take a text that was typed into a box for numbers, by viser's name of the box."""
+        control = next((control for control in self._controls.values() if control.box == box), None)
+        if control is None:
+            self._actions.refuse_text(text)
+        else:
+            self._actions.enter(control.parameter.key, file_value(control.parameter, text))
 
     def __getitem__(self, key: str) -> Control:
         return self._controls[key]

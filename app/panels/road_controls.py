@@ -23,12 +23,10 @@ class RoadControl:
     """What both have in common: there is no slider."""
 
     listed_value = None
+    box = ""
 
     def __init__(self, parameter: Parameter, value: Any) -> None:
         self.parameter, self.value = parameter, value
-
-    def was_moved_to_end(self, requested: Any) -> bool:
-        return False
 
     def widen(self, value: Any) -> None:
         """Nothing: there is no range."""

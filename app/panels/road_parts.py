@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from app.format.parameters import choice_words, shown_number
+from app.format.parameters import NUMBER, choice_words, shown_number
 from model.config.config import Config, FlatRoad, ProfileRoad, SimpleRoad, SumRoad, part_values
 from model.config.parameters import PARAMETER, ROADS, number_text
 
@@ -94,7 +94,4 @@ def _file_value(name: str, value: str) -> Any:
     parameter = PARAMETER.get(f"road.{name}")
     if parameter is None or parameter.kind == "choice":
         return value
-    try:
-        return float(f"{float(value) / parameter.shown_factor:.10g}")
-    except ValueError:
-        return value
+    return float(f"{float(value) / parameter.shown_factor:.10g}") if NUMBER.fullmatch(value) else value

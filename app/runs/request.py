@@ -30,6 +30,11 @@ class Request:
         changes = {other: given for other, given in self.changes.items() if other not in rivals}
         return replace(self, changes={**changes, key: value}, touched=self.touched | {key})
 
+    def entered(self, key: str, value: Any) -> Request:
+        """The same with a value that was typed as text, so that its control may follow."""
+        changed = self.changed(key, value)
+        return replace(changed, touched=changed.touched - {key})
+
     def config(self) -> Config:
         """The configuration requested. Raises ConfigError."""
         return self.base.replace(dict(self.changes)) if self.changes else self.base

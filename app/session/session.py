@@ -35,7 +35,7 @@ VIEW_RATE = 30.0  # Hz: the 3-D view
 TEXT_RATE = 10.0  # Hz: numbers, time slider, time cursors …
 DRAG_TEXT_RATE = 3.0  # Hz: … and while runs follow each other: the page has their curves to draw
 DRAG_PAUSE = 0.3  # s without a new run after which a drag is over
-REFUSAL_DELAY = 1.2  # s from a bad value to its refusal if no other request comes: time to finish typing
+REFUSAL_DELAY = 0.4  # s from a bad value to its refusal if no other request comes: a drag goes on meanwhile
 SEEN_WITHIN = 2.0  # s that a background job waits for something to be drawn; then it goes on without
 IDLE_RATE = 2.0  # Hz: a look at the page's size, while nothing moves …
 STAYS_AWAKE = 5.0  # s … since the user did something or a run came
@@ -68,6 +68,7 @@ class Session:
         self._rests = False  # nothing moves, and the view's thread waits longer
         self._shown_at = self._told_at = -DRAG_PAUSE  # monotonic s: when a run was shown last; numbers
 
+        self._presets = dict(presets)  # and the user's own, which the workspace adds
         self._good: Finished | Driven | None = None  # what is shown
         self._steps = 0  # to be redone, or undone when negative; under the lock
         self._errors = Seldom()
@@ -79,9 +80,8 @@ class Session:
         except Exception:
             self._runner.close()
             raise
-        self._workspace = Workspace(self._window, self._runner, presets)
+        self._workspace = Workspace(self._window, self._runner, self._presets)
         self._transfers = Transfers(client, self, self._window, self._workspace, run)
-        self._transfers.recollect()
         self._thread = threading.Thread(target=self._show, name="trackride-view", daemon=True)
         self._thread.start()
 
@@ -89,19 +89,18 @@ class Session:
     # A page can be quicker than __init__: window and workspace are looked up only when the view's thread acts.
 
     def change(self, key: str, value: Any) -> None:
-        requested = self._runner.latest.changes.get(key)
-        if self._window.was_moved_to_end(key, requested):
-            with self._lock:
-                bad = self._refused is not None
-                self._refuse_at = 0.0  # typing has ended
-            if not bad:
-                self.post(key, lambda: self._window.show_value(key, requested))
-        else:
-            self._runner.change(lambda request: request.changed(key, value))
-            self._stir()
+        self._runner.change(lambda request: request.changed(key, value))
+        self._stir()
+
+    def enter(self, key: str, value: Any) -> None:
+        self._runner.change(lambda request: request.entered(key, value))
+        self._stir()
+
+    def refuse_text(self, text: str) -> None:
+        self.post("text", lambda: self._window.refuse_text(text))
 
     def load(self, preset: str) -> None:
-        base = self._workspace.presets[preset]
+        base = self._presets[preset]
         self._runner.change(lambda request: Request(base))
         self._stir()
 
@@ -229,6 +228,9 @@ class Session:
     def set_dark(self, dark: bool) -> None:
         self.post("dark", lambda: self._workspace.set_dark(dark))
 
+    def recollect(self, visit: str) -> None:
+        self.post("visit", lambda: self._transfers.recollect(visit))
+
     def prefer_dark(self, dark: bool) -> None:
         self.post("preference", lambda: self._workspace.prefer_dark(dark))
 
@@ -236,7 +238,7 @@ class Session:
         self.post("export", lambda: self._export(what))
 
     def cancel_export(self) -> None:
-        self._transfers.stop()
+        self.post("cancel", lambda: self._transfers.stop())
 
     def upload_configuration(self, name: str, content: bytes) -> None:
         self.post("configuration", lambda: self._transfers.take_configuration(name, content))
@@ -346,7 +348,7 @@ class Session:
             self.fail(error)
 
     def _take(self, outcome: Outcome) -> None:
-        """Show a run, or keep a refusal for when the user has finished typing."""
+        """Show a run, or keep a refusal for when a drag is over."""
         match outcome:
             case Finished(request, run):
                 with self._lock:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Protocol
 
@@ -156,12 +156,13 @@ class Transfers:
         self._memory.close()
 
     def remember(self, state: str) -> None:
-        """Have the browser store a text until its next visit."""
+        """Have the tab store a text until its page is loaded anew, and the browser until its next visit."""
+        self._window.store(state)
         self._client.local_storage.set_item(STORED, state)
 
-    def recollect(self) -> None:
-        """Ask the browser what it has stored, and let the workspace restore it."""
-        self._memory.start(self._ask_browser)
+    def recollect(self, visit: str) -> None:
+        """Let the workspace restore what the tab has stored, or what the browser has if that is nothing."""
+        self._memory.start(partial(self._recollect, visit))
 
     def run_again(self, config: Config) -> None:
         """Make a run of which only the configuration is left, for the workspace. Nothing happens while one is made."""
@@ -274,14 +275,23 @@ class Transfers:
 
     # ── In: on the thread of the job ──
 
-    def _ask_browser(self) -> None:
-        state: State | None = None
+    def _recollect(self, visit: str) -> None:
+        state, last = _state(visit), self._ask_browser()
+        if state is None:
+            state = last
+        elif last is not None:
+            own, others = state.presets, [preset for preset in last.presets if preset not in state.presets]
+            state = replace(state, presets=(*others, *own))  # another tab may have saved more presets
+        self._drawing.post("restore", lambda: self._workspace.restore(state))
+
+    def _ask_browser(self) -> State | None:
+        """What the browser has stored last, from any tab."""
         try:
             stored = self._client.local_storage.get_item(STORED, timeout=STORAGE_PATIENCE)
-            state = None if stored is None else state_from(stored)
-        except (TimeoutError, RuntimeError, ValueError) as error:
+        except (TimeoutError, RuntimeError) as error:
             log.info("nothing from the browser's storage: %s", error)
-        self._drawing.post("restore", lambda: self._workspace.restore(state))
+            return None
+        return None if stored is None else _state(stored)
 
     def _run_again(self, config: Config) -> None:
         run: Trajectory | None = None
@@ -314,3 +324,12 @@ class Transfers:
             self._say("No run", str(error))
         else:
             self._drawing.post("baseline", lambda: self._workspace.take_in(run, name.removesuffix(".npz")))
+
+
+def _state(text: str) -> State | None:
+    """What a stored text says, if it is a state at all."""
+    try:
+        return state_from(text)
+    except ValueError as error:
+        log.info("nothing stored can be used: %s", error)
+        return None

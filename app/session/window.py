@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping
 from time import monotonic
 from typing import Any, Protocol
@@ -15,10 +16,11 @@ from app.format.parameters import refusal
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.panels.configuration_windows import YamlWindow, show_faults
+from app.panels.controls import PRECISION
 from app.panels.files_panel import FilesPanel
 from app.panels.notifications import Notifications
 from app.panels.page_layout import LEFT, PageLayout, Screen
-from app.panels.page_setup import add_hints, add_page, apply_theme, title_html
+from app.panels.page_setup import add_hints, add_page, apply_theme, store_visit, title_html
 from app.panels.parameter_panel import ParameterPanel
 from app.panels.playback_panel import PlaybackPanel
 from app.panels.plot_panel import RUNS, PlotPanel
@@ -34,6 +36,7 @@ from app.tabs.road_profile import RoadAhead
 from app.view3d.mode_animation import PERIOD, ModeShow
 from model.analysis.ride import WheelState
 from model.config.config import Config, ConfigError
+from model.config.validation import shorten
 from model.road.road import Road
 from model.simulation.trajectory import Trajectory
 
@@ -111,13 +114,16 @@ class Window:
             gui.set_panel_label("Trackride")
             gui.main_panel.dock_left()
             gui.main_panel.set_width(LEFT)
-            signs = add_page(gui)
-            self._title = signs.title
+            self._signs = signs = add_page(gui)
             signs.in_view.on_update(by_user(lambda event: actions.set_in_view(event.target.value), actions.fail))
             signs.in_front.on_update(
                 by_user(lambda event: actions.set_in_front(frozenset(event.target.value.split(","))), actions.fail)
             )
             signs.night.on_update(by_user(lambda event: actions.prefer_dark(event.target.value), actions.fail))
+            signs.visit.on_update(by_user(lambda event: actions.recollect(event.target.value), actions.fail))
+            signs.typed.on_update(
+                by_user(lambda event: self._controls.enter(*json.loads(event.target.value)[:2]), actions.fail)
+            )
             self._controls = ParameterPanel(gui, presets, preset, config, actions)
             with self._controls.middle:
                 self._folders = [gui.add_folder(name, expand_by_default=False) for name in FOLDERS]
@@ -188,8 +194,8 @@ class Window:
 
     def _name_tab(self, config: Config) -> None:
         title = title_html(config)
-        if self._title.content != title:
-            self._title.content = title
+        if self._signs.title.content != title:
+            self._signs.title.content = title
 
     def show_baseline(self, baseline: Trajectory | None) -> None:
         """Compare with this run from now on; None: with no run."""
@@ -248,13 +254,10 @@ class Window:
         self._notifications.show("refused", "Not possible", body, "red")
         self._controls.show(instead)
 
-    def show_value(self, key: str, value: Any) -> None:
-        """Move a control."""
-        self._controls[key].show(value)
-
-    def was_moved_to_end(self, key: str, requested: Any) -> bool:
-        """Whether the page moved a slider to its end because the requested value lies beyond it."""
-        return self._controls[key].was_moved_to_end(requested)
+    def refuse_text(self, text: str) -> None:
+        """Say that a typed text is no value of a control that takes numbers."""
+        body = f"{shorten(text)} is not understood. Give a number with at most {PRECISION} decimals."
+        self._notifications.show("refused", "Not possible", body, "red")
 
     def report_failure(self, failed: Failed) -> None:
         self._notifications.show("refused", "No run", failed.message, "red")
@@ -416,6 +419,10 @@ class Window:
     def edit_yaml(self, config: Config) -> None:
         """Open a configuration as text."""
         YamlWindow(self._client.gui, config, self._actions)
+
+    def store(self, state: str) -> None:
+        """Have the tab store a text until its page is loaded anew."""
+        store_visit(self._signs, state)
 
     def show_progress(self, doing: str) -> None:
         """Say what is being made for a download; empty: nothing."""

@@ -24,10 +24,10 @@ CALM = 0.3  # s … or without another run when it is not
 class Workspace:
     """Shows what it keeps in the window, and requests runs. Times are monotonic, in s."""
 
-    def __init__(self, window: Window, runner: Runner, presets: Mapping[str, Config]) -> None:
-        """presets: name -> configuration."""
+    def __init__(self, window: Window, runner: Runner, presets: dict[str, Config]) -> None:
+        """presets: name -> configuration; those that the user saves are added to it."""
         self._window, self._runner = window, runner
-        self._presets = dict(presets)
+        self._presets = presets
         self._own: list[str] = []  # names of the user's presets, oldest first
         self._start = runner.latest
         self._started_with = self._start.config()

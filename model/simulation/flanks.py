@@ -5,8 +5,7 @@ force's direction with it, between two stages of a step: no estimate of the erro
 contains such a change is made anew to end just before it, and the next begins just behind.
 
 A wheel that is pressed into a corner goes to and fro without end. After MOST_CHANGES in quick succession it counts as
-jammed: its changes are let pass, and the speeds of its chain, which tremble, no longer limit the step. Positions still
-do, which keeps the trembling below what rtol allows.
+jammed: its changes are let pass, and the speeds of its chain may tremble.
 
 Wheels stand in lanes, as in `Extremes`.
 """
@@ -30,6 +29,7 @@ JUMP = 0.01  # of a normal within RESOLUTION: else the ground is only tightly cu
 RESOLUTION = 5e-8  # s
 MOST_CHANGES = 300  # of one wheel, each at most QUICK after the one before: then it is jammed
 QUICK = 0.01  # s
+TREMBLE = 1e-3  # m/s or rad/s: error of a jammed chain's speeds that is allowed whatever rtol is; more, and joints part
 CALM = 0.02  # s without a change: then it is free again
 NO_NORMAL = 2.0  # of a wheel that bears nothing
 NOBODY = -1
@@ -133,13 +133,13 @@ def changed(flanks, j, t):
 
 
 @inlined
-def _weigh(flanks, j, share):
-    """Errors of the speeds of wheel j's chain count by that share."""
+def _weigh(flanks, j, most):
+    """Errors of the speeds of wheel j's chain are multiplied by that at most."""
     chain = HEAD + j // (2 * LANES) * STATE_SIZE + j % LANES
     for body in range(len(BODIES)):
         for speed in range(len(COORDINATES) // 2, len(COORDINATES)):
             k = chain + (body * len(COORDINATES) + speed) * LANES
-            flanks.over_scale[k] = share * flanks.usual[k]
+            flanks.over_scale[k] = min(flanks.usual[k], most)
 
 
 @inlined
@@ -148,7 +148,7 @@ def _jam(flanks, j, t):
     if flanks.jammed_until[j] < 0.0:
         flanks.jammed[0] += 1.0
     flanks.jammed_until[j] = t + CALM
-    _weigh(flanks, j, 0.0)
+    _weigh(flanks, j, 1.0 / TREMBLE)
 
 
 @compiled
@@ -158,4 +158,4 @@ def release(flanks, t):
         if 0.0 <= flanks.jammed_until[j] < t:
             flanks.jammed_until[j] = -1.0
             flanks.jammed[0] -= 1.0
-            _weigh(flanks, j, 1.0)
+            _weigh(flanks, j, np.inf)

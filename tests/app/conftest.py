@@ -157,10 +157,12 @@ class Tab:
         storage: dict[str, str] | None = None,
         mute: bool = False,
         stands: bool = True,
+        visit: str = "null",
     ) -> None:
         """storage: what the browser has kept from earlier visits; mute: it does not tell.
 
         stands: the page says, as soon as it can, that its panels stand with the loads in front.
+        visit: what the tab has stored itself before its page was loaded anew.
         """
         self._socket = connect(
             explorer.address.replace("http", "ws"),
@@ -171,7 +173,7 @@ class Tab:
         self.widgets: dict[str, dict[str, Any]] = {}  # uuid -> type, value and props
         self.notifications: list[dict[str, Any]] = []
         self.storage: dict[str, str] = {} if storage is None else storage
-        self._mute, self._stands = mute, stands
+        self._mute, self._stands, self._visit = mute, stands, visit
         self.messages: list[dict[str, Any]] = []
         self._thread = threading.Thread(target=self._listen, daemon=True)
         self._thread.start()
@@ -280,6 +282,8 @@ class Tab:
             self.widgets[message["uuid"]] = message
             if self._stands and message["props"].get("label") == "Tabs in front":
                 self.send("GuiUpdateMessage", uuid=message["uuid"], updates={"value": "Loads"})
+            if message["props"].get("label") == "Visit":
+                self.send("GuiUpdateMessage", uuid=message["uuid"], updates={"value": self._visit})
         elif kind == "LocalStorageSetItemMessage":
             self.storage[message["key"]] = message["value"]
         elif kind == "LocalStorageGetItemRequestMessage" and not self._mute:

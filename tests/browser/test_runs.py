@@ -13,6 +13,7 @@ from app.format.differences import change_text, row_texts
 from model import load_config, simulate
 from model.analysis.figures import AIR_TIME, comparison
 from model.simulation.trajectory import Trajectory
+from tests.browser.conftest import OpenTab
 from tests.browser.driver import DOWNLOAD, Explorer
 
 DAMPING = "vehicle.road_suspension.damping"
@@ -166,3 +167,19 @@ def test_preset_parameters_runs_and_baseline_come_back_with_a_reload(at_rest: Ex
     row = page.locator("div:has(> div > p > label)").filter(has_text=re.compile("^Road damping 4.732 → 2.366 kN s/m"))
     row.get_by_role("button", name="Show").first.click()
     expect(at_rest.control("Preset")).to_have_value("Paper vehicle")
+
+
+def test_tabs_go_on_where_each_was_and_a_new_one_where_the_browser_was_last(open_tab: OpenTab) -> None:
+    one = open_tab()
+    two = Explorer(one.page.context.new_page()).open(one.page.url)
+    for tab, key, speed in ((one, "End", 70), (two, "Home", 2)):
+        tab.press("Speed", key)
+        tab.wait_for_value("Speed", "now === value", speed)
+        tab.page.wait_for_function(
+            "text => [localStorage, sessionStorage].every(store => Object.values(store).some(it => it.includes(text)))",
+            arg=f'"drive.speed_kmh": {speed}',
+        )
+    three = Explorer(one.page.context.new_page()).open(one.page.url)
+    three.wait_for_value("Speed", "now === value", 2)
+    one.open(one.page.url)  # anew
+    one.wait_for_value("Speed", "now === value", 70)

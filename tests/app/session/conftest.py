@@ -54,6 +54,7 @@ class FakeWindow:
         self.ghosts: list[Trajectory | None] = []
         self.progress: list[str] = []
         self.surroundings: list[bool] = []
+        self.stored: list[str] = []  # by the tab
 
     @property
     def titles(self) -> list[str]:
@@ -77,6 +78,9 @@ class FakeWindow:
 
     def show_progress(self, doing: str) -> None:
         self.progress.append(doing)
+
+    def store(self, state: str) -> None:
+        self.stored.append(state)
 
     def show_surroundings(self, on: bool) -> None:
         self.surroundings.append(on)

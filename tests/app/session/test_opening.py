@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import threading
 from typing import Any
 
@@ -64,3 +65,24 @@ def test_a_slider_moved_before_the_page_stands_is_not_put_back(
     wait_for(lambda: tab.shows_run(2))
     tab.use("Speed, km/h", 15)  # which would be nothing new, had it been put back
     wait_for(lambda: tab.shows_run(3))
+
+
+def test_what_is_asked_for_while_the_window_is_being_built_is_kept(explore: Any, open_tab: Any) -> None:
+    asked = threading.Event()
+
+    def make_view(client: Any, dark: bool) -> FakeView:
+        assert asked.wait(PATIENCE)
+        return FakeView(client, dark)
+
+    def run(config: Config, **_: Any) -> Trajectory:
+        if (config.drive.speed_kmh, config.value("road.amplitude")) == (60, 0.12):
+            asked.set()
+        return make_run(config)
+
+    tab: Tab = open_tab(explore(preset="half_round", run=run, make_view=make_view))
+    tab.use("Preset", "Paper vehicle")
+    tab.use("Speed, km/h", 60)
+    tab.use("Typed", json.dumps([tab.find("Amplitude, mm"), "120", 1]))
+    wait_for(lambda: tab.shows_run(4))
+    wait_for(lambda: tab.widget("Amplitude, mm")["value"] == 120)
+    assert tab.notifications == []

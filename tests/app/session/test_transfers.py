@@ -313,21 +313,32 @@ def test_an_uploaded_run_becomes_the_baseline_or_is_refused_with_a_word(rig: Rig
 def test_what_is_no_state_is_left_alone(rig: Rig, stored: str | None) -> None:
     if stored is not None:
         rig.client.local_storage.items[STORED] = stored
-    rig.transfers.recollect()
+    rig.transfers.recollect("null")
     rig.wait()
     assert rig.workspace.calls == [("restore", None)]
 
 
 def test_the_browsers_state_is_restored_and_a_mute_browser_has_none(rig: Rig) -> None:
     rig.transfers.remember(state_text(PAPER, FASTER, [], [], None, dark=True))
-    rig.transfers.recollect()
+    rig.transfers.recollect("null")
     rig.wait()
     ((name, state),) = rig.workspace.calls
     assert (name, state.request.config(), state.dark) == ("restore", FASTER.config(), True)
     rig.client.local_storage.mute = True
-    rig.transfers.recollect()
+    rig.transfers.recollect("null")
     rig.wait()
     assert rig.workspace.calls[-1] == ("restore", None)
+
+
+def test_a_tab_that_is_loaded_anew_goes_on_where_it_was_with_the_presets_of_all_tabs(rig: Rig) -> None:
+    mine, other = PAPER.replace({"name": "Mine"}), PAPER.replace({"name": "Other"})
+    rig.transfers.remember(state_text(PAPER, FASTER, [mine], [], None, dark=True))
+    (visit,) = rig.window.stored
+    rig.transfers.remember(state_text(PAPER, Request(PAPER), [other], [], None, dark=False))
+    rig.transfers.recollect(visit)
+    rig.wait()
+    ((_, state),) = rig.workspace.calls
+    assert (state.request.config(), state.dark, state.presets) == (FASTER.config(), True, (other, mine))
 
 
 def test_a_missing_run_is_made_again_once_at_a_time_and_where_it_cannot_the_workspace_is_told() -> None:

@@ -34,7 +34,7 @@ class Visit:
         self.window = FakeWindow()
         self.runner = FakeRunner(first_request(PRESETS[preset], config))
         window, runner = self.window, self.runner
-        self.workspace = Workspace(window, runner, PRESETS)  # type: ignore[arg-type]
+        self.workspace = Workspace(window, runner, dict(PRESETS))  # type: ignore[arg-type]
         self.stored: State | None = None  # what the browser has
         self.workspace.restore(state)
         self.run()
@@ -355,7 +355,7 @@ def test_a_baseline_that_cannot_be_made_again_is_given_up_with_a_word(visit: Vis
 
 def test_nothing_is_stored_before_the_browser_has_told_what_it_has() -> None:
     window, runner = FakeWindow(), FakeRunner(Request(PAPER))
-    workspace = Workspace(window, runner, PRESETS)  # type: ignore[arg-type]
+    workspace = Workspace(window, runner, dict(PRESETS))  # type: ignore[arg-type]
     workspace.finished(Finished(runner.latest, make_run()), 100.0)
     workspace.tick(110.0)
     workspace.set_dark(True)

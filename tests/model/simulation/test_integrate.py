@@ -272,7 +272,7 @@ def test_too_many_steps():
     stiff = {"contact.tangential_damping": 1e8, f"{WHEELS}.mass": 1.0, "simulation.duration": 0.3}
     run = simulate(PAPER.replace(stiff))
     assert run.status.endswith(REASON[Status.TOO_MANY_STEPS])
-    assert run.advice == ADVICE[Status.TOO_MANY_STEPS]
+    assert run.advice.startswith("Set contact.tangential_damping to ")
     assert run.statistics.steps + run.statistics.rejected_steps < 0.3 * 50_000 + 6_000
     assert_good_part(run)
 

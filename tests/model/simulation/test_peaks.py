@@ -103,7 +103,7 @@ def test_the_energy_error_tells_a_bad_run_from_a_good_one():
     coarse = load_config("m113").replace(
         {"simulation.integrator": "rk4", "simulation.step": 0.007, "simulation.duration": 60}
     )
-    assert simulate(coarse).energy_error > 0.05
+    assert not simulate(coarse).complete  # it was, with 81 % of the energy missing
 
 
 def test_a_stop_is_met_at_the_end_of_a_step():

@@ -80,10 +80,10 @@ def test_a_run_can_be_repeated_from_its_result(run, tmp_path):
     np.testing.assert_array_equal(again.normal_load, run.normal_load)
 
 
-def test_a_diverged_and_a_cancelled_run_keep_their_status(tmp_path):
-    diverged = simulate(PAPER.replace({"simulation.integrator": "rk4", "simulation.step": 0.05}))
+def test_an_inaccurate_and_a_cancelled_run_keep_their_status(tmp_path):
+    apart = simulate(PAPER.replace({"simulation.integrator": "rk4", "simulation.step": 0.05}))
     cancelled = simulate(PAPER, should_stop=lambda: True)
-    for run, word in ((diverged, "diverged at t = "), (cancelled, "cancelled")):
+    for run, word in ((apart, "inaccurate at t = "), (cancelled, "cancelled")):
         run.save(tmp_path / "run.npz")
         again = Trajectory.load(tmp_path / "run.npz")
         assert again.status == run.status
