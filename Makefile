@@ -3,7 +3,7 @@ PYTHON := $(firstword $(shell command -v python3.11) $(shell command -v python3)
 BIN := .venv/bin
 AS_ROOT := $(if $(filter-out 0,$(shell id -u)),sudo,)
 
-.PHONY: setup run test check bounds bench chromium readme structure paper pictures clean
+.PHONY: setup run test check bounds bench chromium readme structure paper pictures studies clean
 
 setup: .venv/ready
 
@@ -51,6 +51,9 @@ paper: setup
 pictures: setup chromium paper
 	cp build/paper/claims.png assets/pictures/
 	$(BIN)/python -m tests.browser.pictures
+
+studies: setup
+	$(BIN)/python -m tests.studies
 
 clean:
 	rm -rf .venv build *.egg-info

@@ -27,7 +27,7 @@ APP = (
     ("plots", "view3d", "runs"),
     ("tabs", "files"),
     ("panels", "reports"),
-    ("session", "web"),
+    ("session", "web", "commands"),
     ("server",),
     ("cli",),
 )
@@ -151,7 +151,7 @@ SIZE = 10.0, 9.55  # inches
 INK, LINE = "#1f2933", "#52606d"
 LIGHT = {"app": ("#e8f1fb", "#3b7dbd"), "model": ("#e9f6ed", "#3d8b57")}  # fill, edge
 FRAME = {"app": (0.1, 2.55, 9.8, 6.9), "model": (0.1, 0.1, 9.8, 2.05)}  # left, bottom, width, height
-BOX = {"app": (2.25, 0.82), "model": (1.42, 1.45)}  # width, height
+BOX = {"app": (2.25, 0.82), "model": (1.29, 1.45)}  # width, height
 # The middles of app's rooms from left to right and from below; those of model's stand in a row
 PLACES = {
     "format": (4.5, 0),
@@ -161,7 +161,7 @@ PLACES = {
     "tabs": (4.5, 2),
     "files": (7.05, 2),
 }
-PLACES |= {"panels": (3.2, 3), "reports": (8.5, 3), "session": (3.2, 4), "web": (8.5, 4)}
+PLACES |= {"panels": (3.2, 3), "reports": (8.5, 3), "session": (2.4, 4), "web": (5.4, 4), "commands": (8.5, 4)}
 PLACES |= {"server": (3.2, 5), "cli": (8.5, 5)}
 
 
@@ -229,7 +229,7 @@ def _room(axes: Axes, room: str) -> None:
     _box(axes, (x - width / 2, y - height / 2, width, height), *LIGHT[package])
     what = f"{name}.py" if MODULES[room].stem == name else f"{name}/"
     axes.text(x, y + height / 2 - 0.09, what, size=10.5, weight="bold", color=INK, ha="center", va="top")
-    text = fill(caption(room).replace("`", ""), 36 if package == "app" else 23)
+    text = fill(caption(room).replace("`", ""), 36 if package == "app" else 20)
     axes.text(x, y + height / 2 - 0.32, text, size=8, color=INK, ha="center", va="top", linespacing=1.25)
 
 

@@ -25,18 +25,27 @@ PLACES = {
         *("app.plots.thinning", "app.view3d.track_belt"),
     },
     "threading": {
-        *("app.cli", "app.server", "app.session.session", "app.session.background"),
-        *("app.runs.runner", "app.runs.turns"),
+        *("app.server", "app.session.session", "app.session.background"),
+        *("app.runs.runner", "app.runs.turns", "app.commands.common"),
     },
     "concurrent": {"model.simulation.batch"},
     "matplotlib": {"app.reports"},
+    "pyarrow": {"model.study.table"},
+    "scipy.stats": {"model.study.design", "model.study.sensitivity", "model.study.fit"},
     "trimesh": {"app.view3d.meshes.solids"},
-    **{nowhere: set() for nowhere in ("_thread", "queue", "multiprocessing", "dask", "distributed")},
+    "distributed": {"model.study.cluster"},
+    **{nowhere: set() for nowhere in ("_thread", "queue", "multiprocessing", "dask", "optuna")},
 }
 NOT_IN_MODEL = ("app", "viser", "threading", "asyncio", "trimesh", "matplotlib", "tkinter", "rich", "typer")
 # What loads no viser, so that it serves without a browser and is tested without one
 NO_VISER = ("model", "app.format", "app.plots", "app.runs", "app.tabs", "app.reports", "app.view3d.meshes")
-NO_VISER += ("app.view3d.snapshot", "app.view3d.track_belt", "app.view3d.mode_animation", "app.panels.status_line")
+NO_VISER += (
+    "app.commands",
+    "app.view3d.snapshot",
+    "app.view3d.track_belt",
+    "app.view3d.mode_animation",
+    "app.panels.status_line",
+)
 
 
 def modules_in(package: str) -> list[str]:
@@ -107,6 +116,11 @@ def test_the_model_loads_without_the_app_and_its_libraries():
     loaded = loaded_by(modules_in("model"))
     assert "model" in loaded
     assert not loaded & {"viser", "app", "trimesh", "matplotlib", "typer", "rich"}
+
+
+@pytest.mark.parametrize("module", ["model", "app.cli", "app.server"])
+def test_libraries_of_studies_are_loaded_by_studies_only(module):
+    assert not loaded_by([module]) & {"pyarrow", "distributed", "dask", "optuna"}
 
 
 def loaded_by(modules: list[str]) -> set[str]:

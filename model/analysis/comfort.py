@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import lru_cache, partial
 
 import numpy as np
+from scipy.fft import irfft, rfft
 
 from model.analysis.signals import CENTRE_OF_MASS, Point, Window, point_acceleration, window
 from model.simulation.trajectory import Trajectory
@@ -78,21 +79,19 @@ def ride_comfort(trajectory: Trajectory, point: Point = CENTRE_OF_MASS, taken: W
         return None
     taken = window(trajectory) if taken is None else taken
     counts = taken.samples(trajectory.t)
-    fore_aft, vertical = point_acceleration(trajectory, point).T
-    length, along = _spectrum(fore_aft, rate)
-    up = _spectrum(vertical, rate)[1]
-    felt, pushed, power = (
-        np.fft.irfft(part * _gains(length, rate, gain), length)[: len(vertical)][counts]
-        for part, gain in ((up, W_K), (along, W_D), (up, absorption))
-    )
-    shock = np.fft.irfft(up * _gains(length, rate, low_pass), FINER * length)[: FINER * len(vertical)] * FINER
-    rms = float(np.sqrt(np.mean(felt**2)))
+    samples = len(trajectory.t)
+    length, (along, up) = _spectrum(point_acceleration(trajectory, point).T, rate)
+    parts = np.array([up, along, up]) * _gains(length, rate, W_K, W_D, absorption)
+    felt, pushed, power = irfft(parts, length, overwrite_x=True)[:, :samples][:, counts]
+    shock = irfft(up * _gains(length, rate, low_pass)[0], FINER * length, overwrite_x=True)[: FINER * samples] * FINER
+    energy = felt**2
+    rms = float(np.sqrt(np.mean(energy)))
     return Comfort(
         window=taken,
         vertical=rms,
         fore_aft=float(np.sqrt(np.mean(pushed**2))),
         crest_factor=float(np.abs(felt).max()) / rms if rms > 0 else None,
-        dose=float((np.sum(felt**4) / rate) ** 0.25),
+        dose=float((np.sum(energy**2) / rate) ** 0.25),
         transient=float(running_rms(felt, rate).max()),
         shock=float(np.abs(shock[FINER * counts.start : FINER * counts.stop]).max()) / G,
         absorbed_power=float(np.mean(power**2)) / FOOT**2,
@@ -106,19 +105,20 @@ def filtered(signal: np.ndarray, rate: float, gain: Filter) -> np.ndarray:
     sampled values would bend.
     """
     length, spectrum = _spectrum(signal, rate)
-    return np.fft.irfft(spectrum * _gains(length, rate, gain), length)[: len(signal)]
+    return irfft(spectrum * _gains(length, rate, gain)[0], length)[: len(signal)]
 
 
-def _spectrum(signal: np.ndarray, rate: float) -> tuple[int, np.ndarray]:
-    """Of a signal (N,) with zeros behind it in which all filters forget it: its new length, and the spectrum."""
-    length = 2 ** int(np.ceil(np.log2(len(signal) + DECAY * rate)))
-    return length, np.fft.rfft(signal, length)
+def _spectrum(signals: np.ndarray, rate: float) -> tuple[int, np.ndarray]:
+    """Of signals (..., N) with zeros behind them in which filters forget them: their new length, and the spectra."""
+    length = 2 ** int(np.ceil(np.log2(signals.shape[-1] + DECAY * rate)))
+    return length, rfft(signals, length)
 
 
 @lru_cache(maxsize=8)
-def _gains(length: int, rate: float, gain: Filter) -> np.ndarray:
-    """What a filter does to each frequency of such a spectrum: runs of about the same length share it."""
-    return gain(2j * np.pi * np.fft.rfftfreq(length, 1 / rate))
+def _gains(length: int, rate: float, *gains: Filter) -> np.ndarray:
+    """(…, K) what filters do to each frequency of such a spectrum: runs of about the same length share it."""
+    s = 2j * np.pi * np.fft.rfftfreq(length, 1 / rate)
+    return np.array([gain(s) for gain in gains])
 
 
 def running_rms(signal: np.ndarray, rate: float) -> np.ndarray:

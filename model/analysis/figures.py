@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from math import isfinite
 from typing import Literal
 
 import numpy as np
@@ -158,6 +159,7 @@ FIGURES = (
     LOAD_PEAK, LOAD_RMS, LOAD_COEFFICIENT, TRAVEL, AIR_TIME, DRIFT,
     ENERGY_ERROR,
 )  # fmt: skip
+FIGURE = {figure.name: figure for figure in FIGURES}
 RIDE_FIGURES = tuple(figure for figure in FIGURES if figure.compared)
 HULL_FIGURES = tuple(figure for figure in RIDE_FIGURES if not figure.per_wheel)
 WHEEL_FIGURES = tuple(figure for figure in RIDE_FIGURES if figure.per_wheel)
@@ -185,12 +187,14 @@ def figures_by_name(of: Summary) -> dict[str, float | None]:
 
     The worst time in the air is that of all road wheels together. A figure that cannot be told is None.
     """
-    named = {f"{figure.name}.{wheel}".rstrip("."): value for (figure, wheel), value in _values(of, FIGURES).items()}
-    for figure in WHEEL_FIGURES:
-        wheels = [value for key, value in named.items() if key.startswith(f"{figure.name}.") and value is not None]
-        named[figure.name] = max(wheels, default=None)
-    named[AIR_TIME.name] = float(of.air_time[: len(of.travel_up)].sum())
-    return named
+    named: dict[str, float | None] = {}
+    worst: dict[str, float | None] = dict.fromkeys(figure.name for figure in WHEEL_FIGURES)
+    for (figure, wheel), value in _values(of, FIGURES).items():
+        named[f"{figure.name}.{wheel}" if wheel else figure.name] = value
+        if wheel and value is not None:
+            most = worst[figure.name]
+            worst[figure.name] = value if most is None else max(most, value)
+    return named | worst | {AIR_TIME.name: float(of.air_time[: len(of.travel_up)].sum())}
 
 
 def comparison(now: Trajectory, baseline: Trajectory | None) -> list[Row]:
@@ -250,8 +254,8 @@ def _values(of: Summary, figures: tuple[Figure, ...]) -> dict[tuple[Figure, str]
     for figure in figures:
         reading = figure.of(of)
         if isinstance(reading, np.ndarray):
-            wheels = ((name, float(value)) for name, value in zip(of.names, reading, strict=False))
-            found |= {(figure, name): value for name, value in wheels if np.isfinite(value)}
+            wheels = zip(of.names, reading.tolist(), strict=False)
+            found |= {(figure, name): value for name, value in wheels if isfinite(value)}
         else:
             found[figure, ""] = reading
     return found

@@ -103,18 +103,19 @@ def summary(trajectory: Trajectory) -> Summary:
     """The figures of a run of at least one sample."""
     system, taken = trajectory.system, window(trajectory)
     counts = taken.samples(trajectory.t)
-    load = trajectory.normal_load[counts]
+    load = np.ascontiguousarray(trajectory.normal_load.T).T  # laid out so that sums over time run along rows
+    counted = load[counts]
     travel = suspension_travel(trajectory)
     pitch = trajectory.q[:, system.chassis, 2]
     return Summary(
         names=wheel_names(system),
         window=taken,
         duration=float(trajectory.t[-1] - trajectory.t[0]),
-        load_min=trajectory.normal_load.min(axis=0),
-        load_mean=load.mean(axis=0),
+        load_min=load.min(axis=0),
+        load_mean=counted.mean(axis=0),
         load_max=peak_load(trajectory),
-        load_rms=np.sqrt(np.mean(load**2, axis=0)),
-        load_coefficient=dynamic_load_coefficient(load, trajectory.static_load),
+        load_rms=np.sqrt(np.mean(counted**2, axis=0)),
+        load_coefficient=dynamic_load_coefficient(counted, trajectory.static_load),
         air_time=air_time(trajectory),
         travel_down=travel.min(axis=0),
         travel_up=travel.max(axis=0),
@@ -123,7 +124,7 @@ def summary(trajectory: Trajectory) -> Summary:
         pitch_low=float(pitch.min()),
         pitch_high=float(pitch.max()),
         seat=ride_comfort(trajectory, seat(trajectory.config), taken),
-        imaginary_share=imaginary_share(load, system.n),
+        imaginary_share=imaginary_share(counted, system.n),
         drift=float(trajectory.constraint_residual.max()),
         energy_error=trajectory.energy_error,
         real_time_factor=float(trajectory.t[-1]) / trajectory.statistics.seconds,
@@ -159,9 +160,9 @@ def suspension_travel(trajectory: Trajectory) -> np.ndarray:
 
 def wheel_heights(system: System, q: np.ndarray) -> np.ndarray:
     """(N, n) m: of each road wheel's centre over the hull's centre of mass, in its frame, in poses q (N, B, 3)."""
-    hull_x, hull_y, pitch = q[:, system.chassis, :, None].swapaxes(0, 1)
-    x, y = q[:, system.road_wheels, 0] - hull_x, q[:, system.road_wheels, 1] - hull_y
-    return np.cos(pitch) * y - np.sin(pitch) * x
+    hull_x, hull_y, pitch = np.ascontiguousarray(q[:, system.chassis].T)
+    x, y = np.ascontiguousarray(q[:, system.road_wheels, :2].transpose(2, 1, 0))  # (n, N): fewer and longer rows
+    return (np.cos(pitch) * (y - hull_y) - np.sin(pitch) * (x - hull_x)).T
 
 
 def imaginary_share(load: np.ndarray, road_wheels: int) -> float:

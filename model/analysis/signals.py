@@ -61,11 +61,12 @@ def point_acceleration(trajectory: Trajectory, point: Point = CENTRE_OF_MASS) ->
     """
     hull = trajectory.system.chassis
     pitch = trajectory.q[:, hull, 2]
-    rate, growth = trajectory.v[:, hull, 2], trajectory.a[:, hull, 2]
+    along, up, growth = np.ascontiguousarray(trajectory.a[:, hull].T)
+    square = trajectory.v[:, hull, 2] ** 2
     x, y = point
-    r_x, r_y = np.cos(pitch) * x - np.sin(pitch) * y, np.sin(pitch) * x + np.cos(pitch) * y
-    turning = np.column_stack([-growth * r_y - rate**2 * r_x, growth * r_x - rate**2 * r_y])
-    return trajectory.a[:, hull, :2] + turning
+    cos, sin = np.cos(pitch), np.sin(pitch)
+    r_x, r_y = cos * x - sin * y, sin * x + cos * y
+    return np.array([along - growth * r_y - square * r_x, up + growth * r_x - square * r_y]).T
 
 
 def window(trajectory: Trajectory) -> Window:

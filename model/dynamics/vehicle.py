@@ -91,8 +91,8 @@ class System(NamedTuple):
 
 def kinetic_energy(system: System, v: np.ndarray) -> np.ndarray:
     """J (...,) of all bodies with velocities v (..., B, 3), spinning included."""
-    inertia = np.column_stack([system.mass, system.mass, system.inertia])
-    return np.einsum("...bk,...bk,bk->...", v, v, inertia) / 2  # ten times as fast as a sum over both axes
+    inertia = np.column_stack([system.mass, system.mass, system.inertia]).ravel()
+    return (v**2).reshape(*v.shape[:-2], -1) @ (inertia / 2)  # one product: many times as fast as a sum over both axes
 
 
 def build_system(config: Config) -> System:

@@ -115,7 +115,7 @@ def profile_of(road: configuration.Road, front_wheel: float, radius: float, reac
     ahead = front_wheel + RAMP_AHEAD
     match road:
         case configuration.SineRoad():
-            return shapes.sine(road, ahead if road.start is None else road.start)
+            return _sine(road, ahead if road.start is None else road.start)
         case configuration.RandomRoad():
             return _random(road, ahead, radius)
         case configuration.ProfileRoad():
@@ -147,6 +147,7 @@ def _measured_x(config: Config) -> list[np.ndarray]:
 
 
 # A slider of the vehicle leaves these as they are.
+_sine = lru_cache(maxsize=4)(shapes.sine)
 _random = lru_cache(maxsize=4)(random_profile)
 _measured = lru_cache(maxsize=4)(shapes.measured)
 

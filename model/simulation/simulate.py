@@ -123,6 +123,7 @@ def simulate(
             seconds=perf_counter() - began,
         ),
     )
+    vars(trajectory)["system"] = system  # what it would build when it is asked for
     missing = trajectory.energy_error or 0.0
     if trajectory.complete and missing > ENERGY_ALLOWED:
         return replace(trajectory, status=f"inaccurate: {energy_missing(missing)}", advice=advice(settings))

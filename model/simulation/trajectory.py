@@ -68,7 +68,7 @@ class Trajectory:
         """What was largest: as the integration found it, or else at the samples."""
         return self.tracked or sampled_peaks(self.system, self.t, self.q, self.a, self.normal_load)
 
-    @property
+    @cached_property
     def energy_error(self) -> float | None:
         """Energy that is not accounted for, as a share of what was turned over; None where the work is not known.
 

@@ -17,6 +17,7 @@ from typer.testing import CliRunner, Result
 import app.server
 import model
 from app import cli
+from app.commands import common
 from app.web.admission import MAX_TABS
 from model import Config, Trajectory, load_config
 from model.config.config import parse_config, preset_names
@@ -38,7 +39,7 @@ def test_help_and_version():
     assert trackride("--version").exit_code == 0
 
 
-@pytest.mark.parametrize("command", ["explore", "run", "show"])
+@pytest.mark.parametrize("command", ["explore", "run", "show", "sweep", "sensitivity", "limits", "optimise", "fit"])
 def test_every_command_helps_with_an_example_that_can_be_run(command):
     words = trackride(command, "--help").output.partition("Example: trackride ")[2].split()
     assert words[0] == command
@@ -49,7 +50,7 @@ def test_every_command_helps_with_an_example_that_can_be_run(command):
 
 
 def test_help_does_not_wait_for_the_model_or_the_viewer():
-    code = "import sys, app.cli; sys.exit(bool({'numba', 'scipy', 'viser', 'pydantic'} & set(sys.modules)))"
+    code = "import sys, app.cli; sys.exit(bool({'numba', 'scipy', 'viser', 'pydantic', 'pyarrow'} & set(sys.modules)))"
     assert subprocess.run([sys.executable, "-c", code], cwd=Path(__file__).parents[2]).returncode == 0
 
 
@@ -247,7 +248,7 @@ def test_ctrl_c_while_the_file_is_written_lets_it_be_finished_and_the_second_doe
 
 
 def test_a_progress_bar_stands_on_a_terminal(monkeypatch):
-    monkeypatch.setattr(cli, "errors", Console(stderr=True, force_terminal=True))
+    monkeypatch.setattr(common, "errors", Console(stderr=True, force_terminal=True))
     result = trackride("run", *SHORT, "--set", "name=[red]Tricky")
     assert result.exit_code == 0
     assert "[red]Tricky" in result.stderr

@@ -14,7 +14,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from tests.benchmarks import latency, model, peers, precision, publishing, scale
+from tests.benchmarks import latency, model, peers, precision, publishing, scale, studies
 
 RESULTS = Path(__file__).parent / "results"
 
@@ -32,7 +32,8 @@ def machine_name() -> str:
 def main() -> None:
     found, points = precision.measure()
     precision.draw(points, machine_name())
-    figures = model.measure() | found | peers.measure() | scale.measure() | publishing.measure() | latency.measure()
+    figures = model.measure() | found | peers.measure() | scale.measure()
+    figures |= studies.measure() | publishing.measure() | latency.measure()
     table = Table("what", "median", "unit", title=f"Trackride on {machine_name()}")
     for what, (value, unit) in figures.items():
         table.add_row(what, f"{value:.4g}", unit)

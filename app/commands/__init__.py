@@ -1,0 +1,1 @@
+"""Commands of studies, and what all commands have in common; no viser."""

@@ -1,0 +1,103 @@
+"""The results of `trackride fit`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+from rich.table import Table
+
+from app.format.markup import element
+from app.reports.drawings import WIDTH, Drawing, Look, panels, plain_axes
+from app.reports.html_page import wide_table
+from app.reports.studies.common import csv_bytes, key_label, legend, result_files
+from model.config.config import Config, dump_config
+from model.config.parameters import number_text
+from model.study.design import Range
+from model.study.fit import Estimate, Fit
+
+HEADS = ("Value", "Fitted", "From (95 %)", "To (95 %)")
+SHARE = 4  # spectra are means over stretches of a fourth of the record
+CAPTION = (
+    "Vertical acceleration: measured, fitted, and of the vehicle as it was, in time and as spectra. Intervals "
+    "follow from the slopes at the best values and from what is left; they hold if the model is right but for noise."
+)
+
+
+def files(found: Fit, base: Config, over: Sequence[Range], record: str, low_pass: float | None) -> dict[str, bytes]:
+    """By name: page, figure, tables, and the fitted configuration."""
+    ranges = [[key_label(of.key), of.key, f"{number_text(of.low)} to {number_text(of.high)}"] for of in over]
+    left = f"{found.rms:.3g} m/s² are left (rms)"
+    before = "" if found.rms_before is None else f", {found.rms_before:.3g} m/s² as it was"
+    independent = f"{len(found.t)} samples, worth {found.samples:.0f} independent ones"
+    filtered = "" if low_pass is None else f"; compared up to {low_pass:g} Hz"
+    body = [
+        element("p", f"{left}{before}; {independent}{filtered}."),
+        element("h2", "Values"),
+        wide_table(HEADS, _rows(found)),
+        element("h2", "Ranges"),
+        wide_table(("Key", "Name", "Range"), ranges),
+    ]
+    curves = [found.t, found.measured, found.fitted]
+    tables = {
+        "table.csv": csv_bytes(
+            ("name", "value", "low", "high"), [(name, of.value, of.low, of.high) for name, of in _estimates(found)]
+        ),
+        "curves.csv": csv_bytes(
+            ("t [s]", "measured [m/s^2]", "fitted [m/s^2]"), [[float(v) for v in row] for row in np.array(curves).T]
+        ),
+        "fitted.yaml": dump_config(base.replace(found.changes)).encode(),
+    }
+    subtitle = f"{base.name} on the record {record}: {found.runs} runs"
+    return result_files("Fitted to a record", subtitle, drawing(found), CAPTION, body, [base], tables)
+
+
+def table(found: Fit) -> Table:
+    """For the terminal."""
+    shown = Table(*HEADS)
+    for row in _rows(found):
+        shown.add_row(*row)
+    return shown
+
+
+def _estimates(found: Fit) -> list[tuple[str, Estimate]]:
+    return [
+        *zip(found.keys, found.estimates, strict=True),
+        ("lag of the record, s", found.lag),
+        ("offset of the sensor, m/s²", found.offset),
+    ]
+
+
+def _rows(found: Fit) -> list[list[str]]:
+    return [[name, f"{of.value:.4g}", f"{of.low:.4g}", f"{of.high:.4g}"] for name, of in _estimates(found)]
+
+
+def drawing(found: Fit) -> Drawing:
+    """Over each other in time and as spectra."""
+
+    def draw(figure: Figure, look: Look) -> None:
+        above, below = panels(figure, 2, 1)
+        curves = [("measured", found.measured, look.grey, 1.6), ("fitted", found.fitted, look.accents[0], 1.1)]
+        if found.before is not None:
+            curves.insert(1, ("as it was", found.before, look.accents[1], 0.7))
+        plain_axes(above, look, "Vertical acceleration, m/s²", "Time, s")
+        plain_axes(below, look, "Its spectrum, m/s² rms in each band", "Frequency, Hz")
+        for name, values, colour, width in curves:
+            above.plot(found.t, values, color=colour, lw=width, label=name)
+            below.plot(*_spectrum(found.t, values), color=colour, lw=width)
+        above.set_xlim(found.t[0], found.t[-1])
+        below.set_xlim(0, min(30.0, below.get_xlim()[1]))
+        below.set_ylim(0)
+        legend(above, look, ncols=3, loc="lower right", bbox_to_anchor=(1.0, 1.0))
+
+    return Drawing("Measured and fitted vertical acceleration", WIDTH, 5.2, draw)
+
+
+def _spectrum(t: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies, Hz, and amplitudes."""
+    from scipy.signal import welch
+
+    rate = (len(t) - 1) / (t[-1] - t[0])
+    frequency, power = welch(values, rate, nperseg=max(len(t) // SHARE, 16), scaling="spectrum")
+    return frequency, np.sqrt(power)
