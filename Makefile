@@ -3,7 +3,7 @@ PYTHON := $(firstword $(shell command -v python3.11) $(shell command -v python3)
 BIN := .venv/bin
 AS_ROOT := $(if $(filter-out 0,$(shell id -u)),sudo,)
 
-.PHONY: setup run test check bounds bench chromium readme structure paper pictures studies clean
+.PHONY: setup run test check bounds bench chromium readme structure paper pictures studies soak clean
 
 setup: .venv/ready
 
@@ -38,6 +38,10 @@ bounds: setup
 
 bench: setup
 	$(BIN)/python -m tests.benchmarks
+
+# An hour of everything that may break it; writes tests/soak/REPORT.md.
+soak: setup
+	$(BIN)/python -m tests.soak
 
 readme: setup
 	$(BIN)/python -m tests.readme

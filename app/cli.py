@@ -93,13 +93,33 @@ def explore(
         int, typer.Option(min=0, max=65535, help="Port to listen on; the next free one if it is taken.")
     ] = 8080,
     browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")] = True,
+    max_tabs: Annotated[int, typer.Option(min=1, help="Tabs that may be open at a time.")] = 20,
+    allow_origin: Annotated[
+        list[str] | None,
+        typer.Option(metavar="ORIGIN", help="Let the page of a proxy connect, such as https://ride.example.org."),
+    ] = None,
+    no_token: Annotated[
+        bool, typer.Option("--no-token", help="Let other machines in without a token in the address.")
+    ] = False,
 ) -> None:
-    """Serve the explorer and open it in a browser."""
+    """Serve the explorer and open it in a browser.
+
+    With --host, other machines can open it too: with the token in the address that is printed.
+    """
     start = configuration(config, changes)
     from app.server import serve
 
     with ending_soon():
-        serve(start, Path(config).name, host=host, port=port, open_browser=browser)
+        serve(
+            start,
+            Path(config).name,
+            host=host,
+            port=port,
+            open_browser=browser,
+            max_tabs=max_tabs,
+            allowed_origins=allow_origin or (),
+            with_token=not no_token,
+        )
 
 
 @cli.command(epilog="Example: trackride run paper --set drive.speed_kmh=25 --out run.npz")

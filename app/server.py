@@ -6,20 +6,26 @@ The server listens at once: what a session needs is loaded while the first page 
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import errno
 import gc
 import io
 import logging
 import socket
 import sys
+import threading
 import warnings
 import webbrowser
+from collections.abc import Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import viser
 from rich.console import Console
 
+from app.session.error_log import Throttle
+from app.web.admission import MAX_TABS, Admission, Listening, OriginError
+from app.web.web_server import WebServer
 from model.config.config import Config, load_config, preset_names
 
 if TYPE_CHECKING:
@@ -28,7 +34,8 @@ if TYPE_CHECKING:
 HOST, PORT = "127.0.0.1", 8080
 PORTS_TO_TRY = 100
 HAND_OVER = 5e-4  # s until a thread that computes in Python lets another have its turn
-EVERYWHERE = ("0.0.0.0", "::", "")  # hosts that mean all of this machine's addresses
+CLOSED_FOR = 5.0  # s after a tab has closed until its memory is given back, together with that of others
+LOGGERS = "trackride", "asyncio", "websockets.server"  # that what a page sends can fill
 
 
 class ServerError(Exception):
@@ -38,20 +45,39 @@ class ServerError(Exception):
 class Explorer:
     """A running server. Use `stop` to end it and its sessions."""
 
-    def __init__(self, config: Config, preset: str, host: str = HOST, port: int = PORT, **session: Any) -> None:
+    def __init__(
+        self,
+        config: Config,
+        preset: str,
+        host: str = HOST,
+        port: int = PORT,
+        *,
+        allowed_origins: Sequence[str] = (),
+        with_token: bool = True,
+        max_tabs: int = MAX_TABS,
+        **session: Any,
+    ) -> None:
         """Listen on the first free port from `port` on, or on any with port 0. Raises ServerError.
 
-        config: what each tab runs first; preset: the name it goes by, of a preset or a file. Further arguments go to
-        the sessions.
+        config: what each tab runs first; preset: the name it goes by, of a preset or a file; allowed_origins,
+        with_token, max_tabs: see Admission. Further arguments go to the sessions.
         """
         sys.setswitchinterval(HAND_OVER)  # a run waits between its chunks for panels that are being filled
         presets = {name: load_config(name) for name in preset_names()}
         presets.setdefault(preset, config)
         self._sessions: dict[int, Session] = {}
         free = free_port(host, port)
-        with contextlib.redirect_stdout(io.StringIO()):  # viser's own announcement
-            self.server = _Server(host=host, port=free, verbose=False)
-        self.address = f"http://{_browsable(host)}:{self.server.get_port()}"
+        self.listening = Listening.on(host)
+        try:
+            admission = Admission(self.listening, allowed_origins, with_token, max_tabs)
+        except OriginError as error:
+            raise ServerError(f"--allow-origin: {error}") from error
+        self.server = WebServer(host, free, admission)
+        self._token = admission.token
+        self._throttle = Throttle()
+        for name in LOGGERS:
+            logging.getLogger(name).addFilter(self._throttle)
+        self._giving_back: threading.Timer | None = None
 
         @self.server.on_client_connect
         def _(client: viser.ClientHandle) -> None:
@@ -68,6 +94,20 @@ class Explorer:
             self._close(client.client_id)
 
     @property
+    def with_token(self) -> bool:
+        """Whether it asks for a token."""
+        return bool(self._token)
+
+    @property
+    def address(self) -> str:
+        """The page, for a browser on this machine; with the token if there is one."""
+        return self.address_at(self.listening.browsable)
+
+    def address_at(self, host: str) -> str:
+        """The page, for a browser that reaches this machine by this name or address."""
+        return f"http://{host}:{self.server.get_port()}" + (f"/{self._token}" if self._token else "")
+
+    @property
     def sessions(self) -> tuple[Session, ...]:
         """Those of the tabs that are open."""
         return tuple(self._sessions.values())
@@ -78,17 +118,32 @@ class Explorer:
             self._close(client_id)
         with contextlib.redirect_stdout(io.StringIO()):
             self.server.stop()
+        if self._giving_back is not None:
+            self._giving_back.cancel()
+        for name in LOGGERS:
+            logging.getLogger(name).removeFilter(self._throttle)
 
     def _close(self, client_id: int) -> None:
         session = self._sessions.get(client_id)
         if session is not None:
             session.close()
             self._sessions.pop(client_id, None)  # only now: stopping waits for a tab that is just being closed
+        if self._giving_back is None or not self._giving_back.is_alive():
+            self._giving_back = threading.Timer(CLOSED_FOR, _give_memory_back)
+            self._giving_back.daemon = True
+            self._giving_back.start()
 
 
-class _Server(viser.ViserServer):
-    def request_share_url(self, verbose: bool = True) -> None:
-        """Never: a visitor's message would open a public tunnel to this machine."""
+def _give_memory_back() -> None:
+    """Let go of what closed tabs have left.
+
+    Their panels, and viser's handles with them, hold each other. Python looks for such circles only while much is made
+    anew, which a server without tabs does not do; and the C library keeps what it was given back until it is asked.
+    """
+    gc.collect()
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None) if sys.platform == "linux" else None  # of glibc
+    if trim is not None:
+        trim(0)
 
 
 @cache
@@ -113,21 +168,23 @@ def prepare() -> None:
     solids.warm_up()
 
 
-def serve(config: Config, preset: str, host: str = HOST, port: int = PORT, open_browser: bool = True) -> None:
-    """Run the explorer until Ctrl+C. Exits with a message when it cannot listen."""
+def serve(
+    config: Config, preset: str, host: str = HOST, port: int = PORT, open_browser: bool = True, **admission: Any
+) -> None:
+    """Run the explorer until Ctrl+C. Exits with a message when it cannot listen. admission: see Explorer."""
     warnings.filterwarnings("ignore", message="Queued a .* on a closed connection")
-    console = Console(highlight=False)
+    console = Console(highlight=False, soft_wrap=True)
     try:
-        explorer = Explorer(config, preset, host, port)
+        explorer = Explorer(config, preset, host, port, **admission)
     except ServerError as error:
         sys.exit(f"trackride: {error}")
     try:
         used = explorer.server.get_port()
         if port not in (0, used):
             console.print(f"Port {port} is taken, so this is port {used}.")
-        if host in EVERYWHERE:
-            console.print("Everyone in this network can open it.", style="yellow")
         console.print(f"Trackride explorer: [bold]{explorer.address}[/bold]   (Ctrl+C ends it)")
+        if not explorer.listening.local:
+            _warn(console, explorer)
         if open_browser and not webbrowser.open(explorer.address):
             console.print("No browser could be started; open the address above in one.")
         prepare()
@@ -137,6 +194,17 @@ def serve(config: Config, preset: str, host: str = HOST, port: int = PORT, open_
     finally:
         explorer.stop()
         console.print("Stopped.")
+
+
+def _warn(console: Console, explorer: Explorer) -> None:
+    """Say who else can open the page, and how."""
+    if explorer.listening.everywhere:
+        console.print(f"From other machines: [bold]{explorer.address_at(socket.gethostname())}[/bold]")
+    if explorer.with_token:
+        who = "Who has this address, with its token, can open it from other machines."
+    else:
+        who = "Everyone in this network can open it: it asks for no token."
+    console.print(who, style="yellow")
 
 
 def free_port(host: str, port: int) -> int:
@@ -162,10 +230,3 @@ def free_port(host: str, port: int) -> int:
                 raise ServerError(f"cannot listen on {host}:{candidate}: {error.strerror}") from error
             return candidate
     raise ServerError(f"no port from {port} to {last - 1} is free on {host}")
-
-
-def _browsable(host: str) -> str:
-    """The host as a browser on this machine can reach it."""
-    if host in EVERYWHERE:
-        return "127.0.0.1"
-    return f"[{host}]" if ":" in host else host

@@ -27,7 +27,7 @@ APP = (
     ("plots", "view3d", "runs"),
     ("tabs", "files"),
     ("panels", "reports"),
-    ("session", "commands"),
+    ("session", "web", "commands"),
     ("server",),
     ("cli",),
 )
@@ -161,8 +161,8 @@ PLACES = {
     "tabs": (4.5, 2),
     "files": (7.05, 2),
 }
-PLACES |= {"panels": (3.2, 3), "reports": (8.5, 3), "session": (3.2, 4), "server": (3.2, 5)}
-PLACES |= {"commands": (8.5, 4), "cli": (8.5, 5)}
+PLACES |= {"panels": (3.2, 3), "reports": (8.5, 3), "session": (2.4, 4), "web": (5.4, 4), "commands": (8.5, 4)}
+PLACES |= {"server": (3.2, 5), "cli": (8.5, 5)}
 
 
 def draw() -> None:

@@ -24,7 +24,10 @@ PLACES = {
         ),
         *("app.plots.thinning", "app.view3d.track_belt"),
     },
-    "threading": {"app.session.session", "app.session.background", "app.runs.runner", "app.commands.common"},
+    "threading": {
+        *("app.server", "app.session.session", "app.session.background"),
+        *("app.runs.runner", "app.runs.turns", "app.commands.common"),
+    },
     "concurrent": {"model.simulation.batch"},
     "matplotlib": {"app.reports"},
     "pyarrow": {"model.study.table"},

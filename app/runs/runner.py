@@ -14,12 +14,14 @@ from time import monotonic
 
 from app.runs.drive import FRAME, Driver
 from app.runs.request import Driven, Failed, Finished, Outcome, Refused, Request, Simulate
+from app.runs.turns import COMPUTING
 from model.config.validation import ConfigError
 from model.dynamics.equilibrium import NoEquilibriumError
 
 NEARLY_DONE = 0.5  # part of a run that is done; beyond it a newer request lets the run finish
 PATIENCE = 0.25  # s without a new curve after which a run may finish, so that a long drag shows something…
 LONGEST = 1.0  # s … unless it takes longer than this
+TURN = 0.05  # s after which a run lets those of other tabs go on first
 
 
 class Runner:
@@ -41,6 +43,7 @@ class Runner:
         self._begun = 0  # number of the request that was begun last
         self._outcomes: dict[type, Outcome] = {}  # a refusal does not hide the run before it
         self._progress: float | None = None  # of the run under way, 0…1; None until the model is compiled
+        self._turn_began = 0.0  # when the run under way had its turn, monotonic s
         self._began_at: float | None = None  # monotonic s; None: no run under way
         self._shown_at = 0.0  # when the last run finished
         self._speed: float | None = None  # of the drive, times real time; 0: it stands; None: no drive
@@ -106,17 +109,23 @@ class Runner:
                 )
                 if self._closed:
                     return
-                driving, request = self._speed is not None, self._request
-                if not driving:
-                    self._begun, self._progress, self._began_at = request.number, None, monotonic()
+                driving = self._speed is not None
             if driving:
                 self._drive_on()
             else:
-                outcome = self._outcome_of(request)
-                self._began_at = None
-                if outcome is not None:
-                    self._shown_at = monotonic()
-                    self._publish(outcome)
+                self._run_latest()
+
+    def _run_latest(self) -> None:
+        with COMPUTING.turn():
+            self._turn_began = monotonic()
+            with self._condition:  # the latest now, after waiting for the turn
+                request = self._request
+                self._begun, self._progress, self._began_at = request.number, None, monotonic()
+            outcome = self._outcome_of(request)
+            self._began_at = None
+        if outcome is not None:
+            self._shown_at = monotonic()
+            self._publish(outcome)
 
     def _publish(self, outcome: Outcome) -> None:
         with self._condition:
@@ -141,6 +150,9 @@ class Runner:
         self._progress = part
 
     def _should_stop(self) -> bool:
+        if monotonic() - self._turn_began > TURN:
+            COMPUTING.pass_on()
+            self._turn_began = monotonic()
         if self._closed or self._speed is not None:
             return True
         if self._request.number == self._begun or (self._progress or 0.0) >= NEARLY_DONE:

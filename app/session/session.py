@@ -21,6 +21,8 @@ from app.panels.road_parts import with_part, without_last
 from app.runs.playback import Playback, time_to_look
 from app.runs.request import Driven, Failed, Finished, Outcome, Refused, Request, Simulate, first_request
 from app.runs.runner import Runner
+from app.runs.turns import SHOWING
+from app.session.error_log import Seldom, kind_of
 from app.session.transfers import Download, Transfers
 from app.session.window import VehicleView, Window
 from app.session.workspace import Workspace
@@ -35,7 +37,8 @@ DRAG_TEXT_RATE = 3.0  # Hz: … and while runs follow each other: the page has t
 DRAG_PAUSE = 0.3  # s without a new run after which a drag is over
 REFUSAL_DELAY = 0.4  # s from a bad value to its refusal if no other request comes: a drag goes on meanwhile
 SEEN_WITHIN = 2.0  # s that a background job waits for something to be drawn; then it goes on without
-SAME_ERROR = 5.0  # s before the same error is logged and shown again
+IDLE_RATE = 2.0  # Hz: a look at the page's size, while nothing moves …
+STAYS_AWAKE = 5.0  # s … since the user did something or a run came
 
 log = logging.getLogger("trackride")
 
@@ -54,19 +57,21 @@ class Session:
         make_view: Callable[[viser.ClientHandle, bool], VehicleView] = View3D,
     ) -> None:
         """presets: name -> configuration, among them `preset`; config: what to run first."""
-        self._lock = threading.Lock()  # of the next six
+        self._lock = threading.RLock()  # of the next eight
         self._playback = Playback()
         self._driving = False  # on and on, instead of a run
         self._in_view = True  # the page is not in the background
         self._posted: dict[str, Callable[[], None]] = {}  # what the view's thread is to do: the newest of each kind
         self._refused: Refused | None = None  # a bad request that the user has not been told of yet
         self._refuse_at = 0.0  # monotonic s
+        self._awake_until = monotonic() + STAYS_AWAKE
+        self._rests = False  # nothing moves, and the view's thread waits longer
         self._shown_at = self._told_at = -DRAG_PAUSE  # monotonic s: when a run was shown last; numbers
 
         self._presets = dict(presets)  # and the user's own, which the workspace adds
         self._good: Finished | Driven | None = None  # what is shown
         self._steps = 0  # to be redone, or undone when negative; under the lock
-        self._last_error: tuple[str, float] = ("", 0.0)
+        self._errors = Seldom()
         self._wake = threading.Event()
         self._closed = threading.Event()
         self._runner = Runner(first_request(presets[preset], config), run, self._wake.set, self.fail)
@@ -85,9 +90,11 @@ class Session:
 
     def change(self, key: str, value: Any) -> None:
         self._runner.change(lambda request: request.changed(key, value))
+        self._stir()
 
     def enter(self, key: str, value: Any) -> None:
         self._runner.change(lambda request: request.entered(key, value))
+        self._stir()
 
     def refuse_text(self, text: str) -> None:
         self.post("text", lambda: self._window.refuse_text(text))
@@ -95,17 +102,21 @@ class Session:
     def load(self, preset: str) -> None:
         base = self._presets[preset]
         self._runner.change(lambda request: Request(base))
+        self._stir()
 
     def reset(self) -> None:
         self._runner.change(lambda request: Request(request.base))
+        self._stir()
 
     def undo(self) -> None:
         with self._lock:
             self._steps -= 1
+        self._stir()
 
     def redo(self) -> None:
         with self._lock:
             self._steps += 1
+        self._stir()
 
     def use_configuration(self, read: Callable[[], Config | None]) -> None:
         def use() -> None:
@@ -187,6 +198,7 @@ class Session:
         """Tell the runner how fast to drive, if at all. Under the lock."""
         speed = self._playback.speed if self._playback.playing and self._in_view else 0.0
         self._runner.drive(speed if self._driving else None, anew)
+        self._stir()
 
     def set_view(self, view: str) -> None:
         self.post("view", lambda: self._window.view.set_view(view))
@@ -250,6 +262,15 @@ class Session:
         """Have the view's thread do something at its next frame; of each kind the newest counts."""
         with self._lock:
             self._posted[kind] = act
+        self._stir()
+
+    def _stir(self) -> None:
+        """Something happens: from now on frames follow each other at their full rate."""
+        with self._lock:
+            self._awake_until = monotonic() + STAYS_AWAKE
+            if self._rests:
+                self._rests = False
+                self._wake.set()
 
     @property
     def shown(self) -> Trajectory | None:
@@ -279,10 +300,8 @@ class Session:
         self.show_now(lambda: self._window.draw(time))
 
     def fail(self, error: Exception) -> None:
-        text, now = f"{type(error).__name__}: {error}", monotonic()
-        if self._last_error[0] != text or now - self._last_error[1] > SAME_ERROR:
-            self._last_error = (text, now)
-            log.error("in a session", exc_info=error)
+        log.error("in a session", exc_info=error)
+        if self._errors.passes(kind_of(error)) is not None:
             self.post("error", lambda: self._window.report_error(error))
 
     def close(self) -> None:
@@ -296,7 +315,6 @@ class Session:
     # ── What is seen: on the view's thread from here on ──
 
     def _show(self) -> None:
-        frame = 1 / VIEW_RATE
         before = next_text = monotonic()
         while not self._closed.is_set():
             now = monotonic()
@@ -304,11 +322,24 @@ class Session:
             with_text = now >= next_text
             if with_text:
                 next_text = now + 1 / TEXT_RATE
-            for outcome in self._runner.take():
-                self._attempt(partial(self._take, outcome))
-            self._attempt(partial(self._draw, elapsed, with_text))
+            with SHOWING.turn():
+                for outcome in self._runner.take():
+                    self._stir()
+                    self._attempt(partial(self._take, outcome))
+                self._attempt(partial(self._draw, elapsed, with_text))
+            with self._lock:
+                rests = self._rests = self._told_at >= self._awake_until and not self._moves
+            frame = 1 / (IDLE_RATE if rests else VIEW_RATE)
             self._wake.wait(max(before + frame - monotonic(), 0.0))
             self._wake.clear()
+            if rests:
+                before = monotonic()  # what begins to move now has not moved while all was at rest
+
+    @property
+    def _moves(self) -> bool:
+        """Whether there is something to show at the full rate, though the user does nothing. Under the lock."""
+        seen = self._in_view and (self._playback.playing or self._window.shows_mode)
+        return seen or self._refused is not None or self._runner.under_way() is not None
 
     def _attempt(self, act: Callable[[], None]) -> None:
         try:
@@ -377,8 +408,9 @@ class Session:
         now = monotonic()
         if now >= self._told_at + 1 / DRAG_TEXT_RATE or now >= self._shown_at + DRAG_PAUSE:
             self._told_at = now
-            self._window.show_time(playback, driving)
-            self._window.show_status(self._runner.under_way())
+            if not self._rests:
+                self._window.show_time(playback, driving)
+                self._window.show_status(self._runner.under_way())
             self._window.fit_page()
         self._workspace.tick(now)
         missing, news = self._workspace.missing_run, self._workspace.news(now)

@@ -223,6 +223,11 @@ class Window:
         self.view.show(self._mode.swing)
         self.view.show_ghost(self._mode.rest)
 
+    @property
+    def shows_mode(self) -> bool:
+        """Whether a mode swings in the place of the run."""
+        return self._mode is not None
+
     def _end_mode(self) -> None:
         """Show the run again."""
         if self._mode is not None and self._run is not None:

@@ -10,7 +10,7 @@ from model.config.parameters import PARAMETER, number_text
 
 APART_NOTED = 1e-4  # m that joints may be apart before a reader is warned
 APART_ALLOWED = 1e-3  # m: a run ends where they are further apart
-ENERGY_NOTED = 1e-3  # of the energy turned over that may be unaccounted for before a reader is warned
+ENERGY_NOTED = 3e-4  # of the energy turned over that may be unaccounted for before a reader is warned
 ENERGY_ALLOWED = 0.05  # more, and a run is not complete
 GENTLE_RATE, FAST_RATE = 5.0, 100.0  # 1/s: Baumgarte's constants between these give the same motion
 SHORTER = 0.25  # of a fixed step: the next to be tried

@@ -18,6 +18,7 @@ import app.server
 import model
 from app import cli
 from app.commands import common
+from app.web.admission import MAX_TABS
 from model import Config, Trajectory, load_config
 from model.config.config import parse_config, preset_names
 from model.config.parameters import PARAMETER
@@ -291,8 +292,17 @@ def test_explore_hands_over_to_the_server(monkeypatch, tmp_path):
     path = tmp_path / "mine.yaml"
     path.write_text("drive: {speed_kmh: 12}")
     assert trackride("explore").exit_code == 0
-    assert trackride("explore", path, "--host", "0.0.0.0", "--port", "8090", "--no-browser").exit_code == 0
-    assert served == [
-        ((load_config("paper"), "paper"), {"host": "127.0.0.1", "port": 8080, "open_browser": True}),
-        ((load_config(path), "mine.yaml"), {"host": "0.0.0.0", "port": 8090, "open_browser": False}),
-    ]
+    there = "--host", "0.0.0.0", "--port", "8090", "--no-browser"
+    let_in = "--max-tabs", 3, "--no-token", "--allow-origin", "https://a.b", "--allow-origin", "http://c:9"
+    assert trackride("explore", path, *there, *let_in).exit_code == 0
+    (given, here), (other, elsewhere) = served
+    assert given == (load_config("paper"), "paper")
+    assert here == {
+        "host": "127.0.0.1", "port": 8080, "open_browser": True,
+        "max_tabs": MAX_TABS, "allowed_origins": (), "with_token": True,
+    }  # fmt: skip
+    assert other == (load_config(path), "mine.yaml")
+    assert elsewhere == {
+        "host": "0.0.0.0", "port": 8090, "open_browser": False,
+        "max_tabs": 3, "allowed_origins": ["https://a.b", "http://c:9"], "with_token": False,
+    }  # fmt: skip

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -10,6 +12,7 @@ import sys
 import threading
 import time
 import urllib.request
+import weakref
 from typing import Any
 
 import pytest
@@ -125,6 +128,58 @@ def test_no_visitor_can_open_a_tunnel(explore: Any, open_tab: Any, monkeypatch: 
     assert not asked.wait(0.2)
     theme = next(message for message in tab.messages if message["type"] == "ThemeConfigurationMessage")
     assert not theme["show_share_button"]
+
+
+def test_memory_comes_back_when_a_tab_has_closed(explore: Any, open_tab: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(app.server, "CLOSED_FOR", 0.01)
+    explorer: Explorer = explore()
+    staying, tab = open_tab(explorer), open_tab(explorer)
+    wait_for(lambda: staying.shows_run(1) and tab.shows_run(1))
+    gc.disable()  # which may happen to look for it otherwise
+    try:
+        sessions = [weakref.ref(session) for session in explorer.sessions]
+        shown = [weakref.ref(session.shown) for session in explorer.sessions]
+        tab.close()
+        wait_for(lambda: sum(ref() is None for ref in sessions) == sum(ref() is None for ref in shown) == 1)
+    finally:
+        gc.enable()
+    staying.use("Speed, km/h", 20)
+    wait_for(lambda: staying.shows_run(2))
+
+
+def test_what_a_page_sends_again_and_again_fills_no_log(
+    explore: Any, open_tab: Any, caplog: pytest.LogCaptureFixture
+) -> None:
+    tab: Tab = open_tab(explore())
+    wait_for(lambda: tab.shows_run(1))
+    speed = tab.find("Speed, km/h")
+    for number in range(50):
+        tab.send("GuiUpdateMessage", uuid=speed, updates={f"nothing {number}": number})
+        tab.send("GuiUpdateMessage", uuid=speed, updates={"value": f"no number {number}"})
+    tab.use("Speed, km/h", 20)
+    wait_for(lambda: tab.shows_run(2))
+    gc.collect()  # asyncio tells of a task's error when the task goes
+    assert 1 <= len(caplog.messages) <= 2
+
+
+@pytest.mark.parametrize("with_token", [True, False])
+def test_it_warns_when_others_can_open_it(
+    with_token: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupt(server: viser.ViserServer) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(viser.ViserServer, "sleep_forever", interrupt)
+    serve(PAPER, "paper", host="0", port=0, open_browser=False, with_token=with_token)
+    said = capsys.readouterr().out
+    page, elsewhere = (re.search(f"{start}: http://([^/ ]+):\\d+(/?\\S*)", said) for start in ("explorer", "machines"))
+    assert page is not None
+    assert elsewhere is not None
+    assert (page[1], elsewhere[1]) == ("127.0.0.1", socket.gethostname())
+    assert page[2] == elsewhere[2]
+    assert bool(page[2]) == with_token
+    assert ("Everyone in this network" in said) != with_token
+    assert ("with its token" in said) == with_token
 
 
 def started(*options: str) -> subprocess.Popen[str]:

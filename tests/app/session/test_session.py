@@ -198,7 +198,7 @@ def test_an_error_in_every_frame_is_told_once(explore: Any, open_tab: Any, caplo
     class Breaking(FakeView):
         def draw(self, time: float) -> None:
             self.times.append(time)
-            raise RuntimeError("cannot draw")
+            raise RuntimeError(f"cannot draw {len(self.times)}")  # another text each time
 
     explorer: Explorer = explore(make_view=Breaking)
     tab: Tab = open_tab(explorer)
@@ -206,9 +206,9 @@ def test_an_error_in_every_frame_is_told_once(explore: Any, open_tab: Any, caplo
     with caplog.at_level(logging.ERROR, "trackride"):
         wait_for(lambda: len(view.times) > 5, "frames")
         wait_for(lambda: tab.notifications, "a notification")
-    frames, began = len(view.times), time.monotonic()
-    wait_for(lambda: len(view.times) > frames + 12, "more frames")
-    assert time.monotonic() - began > 10 / VIEW_RATE  # not as fast as it can
+        frames, began = len(view.times), time.monotonic()
+        wait_for(lambda: len(view.times) > frames + 12, "more frames")
+        assert time.monotonic() - began > 10 / VIEW_RATE  # not as fast as it can
     assert len(tab.notifications) == 1
     assert caplog.text.count("RuntimeError: cannot draw") == 1
 
@@ -259,6 +259,32 @@ def test_playback_moves_on_and_obeys(explore: Any, open_tab: Any) -> None:
     tab.press("Play or pause")
     wait_for(lambda: len(set(view.times[-3:])) == 3)
     wait_for(lambda: float(re.search(r'trackride-time" at="\[\[([\d.]+)', tab.html("trackride-time"))[1]) > 1.35)
+
+
+def test_a_tab_that_nobody_looks_at_rests_until_something_happens(
+    explore: Any, open_tab: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(app.session.session, "STAYS_AWAKE", 0.1)
+    monkeypatch.setattr(app.session.session, "IDLE_RATE", 1e-3)  # Hz: what does not wake it comes too late
+    explorer: Explorer = explore()
+    tab: Tab = open_tab(explorer)
+    wait_for(lambda: tab.shows_run(1))
+    session = explorer.sessions[0]
+    view: Any = session._window.view
+    assert not session._rests  # it plays
+    tab.use("In view", False)
+    wait_for(lambda: session._rests, "rest")
+    tab.use("Speed, km/h", 30)
+    wait_for(lambda: tab.shows_run(2))
+    wait_for(lambda: session._rests, "rest again")
+    before = view.times[-1]
+    tab.use("In view", True)
+    wait_for(lambda: view.times[-1] > before, "the run to play on")
+    assert view.times[-1] < before + 1  # not as if it had played all the time
+    tab.press("Play or pause")
+    wait_for(lambda: session._rests, "rest while it stands")
+    tab.press("Play or pause")
+    wait_for(lambda: not session._rests)
 
 
 def test_view_switches_reach_the_scene_on_the_view_thread(explore: Any, open_tab: Any) -> None:

@@ -1,0 +1,1 @@
+"""The web server: who may open the explorer, and what viser's server lacks."""

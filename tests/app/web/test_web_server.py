@@ -1,0 +1,57 @@
+"""What viser's server does that ours does not, and what it lacks."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+import pytest
+import websockets.asyncio.server
+
+from app.web.web_server import _AnyThreadEvent, _asked_first
+from tests.app.conftest import Tab, wait_for
+
+
+def test_what_one_tab_says_of_a_form_is_kept_for_no_other(explore: Any, open_tab: Any) -> None:
+    explorer = explore()
+    one: Tab = open_tab(explorer)
+    wait_for(lambda: one.shows_run(1))
+    for number in range(20):
+        one.send("GuiFormDirtyMessage", uuid=f"form {number}")
+    one.use("Speed, km/h", 20)
+    wait_for(lambda: one.shows_run(2))
+    later: Tab = open_tab(explorer)
+    wait_for(lambda: later.shows_run(1))
+    assert not [message for message in later.messages if message["type"] == "GuiFormDirtyMessage"]
+
+
+def test_a_server_that_would_let_everyone_in_does_not_start() -> None:
+    serve = websockets.asyncio.server.serve
+    with pytest.raises(RuntimeError, match="nobody would be turned away"), _asked_first(lambda *_: None):
+        pass
+    assert websockets.asyncio.server.serve is serve
+
+
+def test_an_event_that_is_set_on_another_thread_leaves_those_who_wait_to_the_loop() -> None:
+    async def check() -> None:
+        event = _AnyThreadEvent()
+        waiter = asyncio.create_task(event.wait())
+        await asyncio.sleep(0)
+        await asyncio.to_thread(event.set)
+        await asyncio.sleep(0)
+        assert event.is_set()
+        assert not waiter.done()
+        event.set()
+        assert await waiter
+        event.clear()
+        assert not event.is_set()
+
+    asyncio.run(check())
+
+
+def test_tabs_wait_for_such_events(explore: Any, open_tab: Any) -> None:
+    explorer = explore()
+    tab: Tab = open_tab(explorer)
+    wait_for(lambda: tab.shows_run(1))
+    states = explorer.server._websock_server._client_state_from_id.values()
+    assert {type(state.message_buffer.message_event) for state in states} == {_AnyThreadEvent}

@@ -1,0 +1,40 @@
+"""A short form of each part of the soak."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.soak.draws import drawn
+from tests.soak.files import check_file
+from tests.soak.outcome import Outcome
+from tests.soak.runs import check_run
+from tests.soak.server import connects, dragging, driving
+from tests.soak.signals import interruptions
+
+
+def test_random_configurations_run_or_say_why_not() -> None:
+    assert [fault for number in range(60) if (fault := check_run(number)[1])] == []
+
+
+def test_changed_files_are_understood_or_refused_in_words() -> None:
+    assert [fault for number in range(200) if (fault := check_file(number)[1])] == []
+
+
+def test_a_number_names_a_configuration() -> None:
+    assert drawn(4) == drawn(4)
+    assert drawn(4) != drawn(7)
+
+
+def test_a_run_that_is_not_what_it_says_is_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tests.soak.runs.DRIFT", -1.0)
+    assert "joints" in check_run(3)[1]
+
+
+@pytest.mark.parametrize(
+    "part",
+    [lambda: connects(5), lambda: dragging(2.0), lambda: driving(10.0), lambda: interruptions(3)],
+    ids=["connects", "dragging", "driving", "interruptions"],
+)
+def test_the_explorer_and_its_files_outlast(part: object) -> None:
+    outcome: Outcome = part()  # type: ignore[operator]
+    assert outcome.faults == []
