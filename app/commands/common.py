@@ -24,7 +24,6 @@ if TYPE_CHECKING:
 
 BAD_INPUT, DIVERGED, CANCELLED = 2, 3, 130  # exit status
 STOPPING = 1.5  # s that the explorer has to close its tabs after Ctrl+C
-STOPPING = 1.5  # s that the explorer has to close its tabs after Ctrl+C
 
 output = Console(highlight=False)
 errors = Console(highlight=False, stderr=True)

@@ -23,9 +23,9 @@ from model.road.nearest_point import nearest
 from model.simulation.dense import entry_within
 from model.simulation.extremes import place_of
 
-TURN = 0.02  # of a normal in a step that may be a jump, and more than a gentle road turns it by:
+TURN = 0.06  # of a normal in a step that may be a jump, and more than a gentle road turns it by:
 BEND = 0.25  # of the wheel's way over its radius
-JUMP = 0.01  # of a normal within RESOLUTION: else the ground is only tightly curved
+JUMP = 0.04  # of a normal within RESOLUTION: else the ground is only tightly curved
 RESOLUTION = 5e-8  # s
 MOST_CHANGES = 300  # of one wheel, each at most QUICK after the one before: then it is jammed
 QUICK = 0.01  # s

@@ -20,6 +20,7 @@ import viser
 
 import app.cli
 import app.server
+from app.commands.common import STOPPING
 from app.server import Explorer, ServerError, free_port, serve
 from model.config.config import load_config
 from model.simulation.trajectory import Trajectory
@@ -230,7 +231,7 @@ def test_what_would_not_end_after_an_interrupt_is_ended() -> None:
             sent = time.monotonic()
             process.send_signal(signal.SIGINT)
             assert process.communicate(timeout=20) == ("lost\nbegun\n", "")
-            assert app.cli.STOPPING <= time.monotonic() - sent < app.cli.STOPPING + 2.0
+            assert STOPPING <= time.monotonic() - sent < STOPPING + 2.0
         finally:
             process.kill()
 

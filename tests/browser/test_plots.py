@@ -265,6 +265,7 @@ def test_charts_that_are_made_anew_while_a_run_plays_have_the_numbers_of_their_a
     page = at_rest.page
     clear_baseline(at_rest)
     at_rest.button("▶ Play").click()
+    expect(at_rest.button("Pause")).to_be_visible()  # of two controls used within 50 ms viser tells the last one only
     before = at_rest.run_number()
     at_rest.press("Speed", "ArrowRight")
     at_rest.wait_for_run(after=before)
