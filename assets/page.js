@@ -62,7 +62,7 @@ if (!document.body.dataset.trackride) {
   const PAUSE = 1000;  // ms
   const BOXES = '.mantine-NumberInput-input, .mantine-TextInput-input, .mantine-Textarea-input';
   const timers = new Map();  // of the boxes with a text that does not count yet
-  const label = (part) => part.querySelector('label[for]') ?? label(part.parentElement);
+  const row = (part) => part.querySelector('label[for]') ? part : row(part.parentElement);
   const drop = (box) => {
     clearTimeout(timers.get(box));
     return timers.delete(box);
@@ -83,7 +83,7 @@ if (!document.body.dataset.trackride) {
       pass(box);
       box.setSelectionRange(caret, caret);
     } else {
-      trackrideInTurn(() => tell('typed', JSON.stringify([label(box).htmlFor, text, ++told])));
+      trackrideInTurn(() => tell('typed', JSON.stringify([row(box).querySelector('label[for]').htmlFor, text, ++told])));
     }
   };
   const on = (names, act) => names.split(' ').forEach((name) => document.addEventListener(name, (event) => {
@@ -98,9 +98,15 @@ if (!document.body.dataset.trackride) {
     event.stopImmediatePropagation();
     count(box);
   });
+  // A box that is left with a value beyond its slider would move to the slider's end. Any other must hear that it is
+  // left: it takes the keys back at each new value else, as the player's box does while a run plays
+  const beyond = (box) => {
+    const slider = row(box).querySelector('[role="slider"]'), value = Number(box.value);
+    return slider && (value < Number(slider.ariaValueMin) || value > Number(slider.ariaValueMax));
+  };
   on('focusout', (box, event) => {
     count(box);
-    if (box.matches('.mantine-NumberInput-input')) event.stopImmediatePropagation();  // at which it moves to the slider's end
+    if (beyond(box)) event.stopImmediatePropagation();
   });
   on('keydown', (box, {key}) => {
     if (key === 'Escape' && drop(box)) set(box, box.defaultValue);
