@@ -38,7 +38,9 @@ def fit(
     changes: SetOption = None,
     measured: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help='CSV of time and vertical acceleration, headed such as "t [s],a [m/s^2]".'),
+        typer.Option(
+            metavar="FILE", help='CSV of time and vertical acceleration, headed such as "t \\[s],a \\[m/s^2]".'
+        ),
     ] = None,
     columns: Annotated[str, typer.Option(help="Names of both columns, with a comma between.")] = "",
     over: OverOption = [],  # noqa: B006 (typer copies it)
@@ -62,11 +64,13 @@ def fit(
         fail("give --measured FILE")
     from app.reports.studies.fit import files, table
     from model.analysis import signals
+    from model.config.profile_points import FILE_LIMIT
+    from model.files import read_file
     from model.study import fit as fitting
     from model.study.design import DesignError
 
     try:
-        text = measured.read_text(encoding="utf-8", errors="replace")
+        text = read_file(measured, FILE_LIMIT).decode("utf-8", errors="replace")
         record = fitting.read_record(text, [name.strip() for name in columns.split(",") if name.strip()])
     except OSError as error:
         fail(f"--measured {measured}: {error.strerror}")
@@ -90,6 +94,9 @@ def fit(
     for key, at_end in zip(found.keys, found.at_end, strict=True):
         if at_end:
             say(f"{key} lies at an end of its range: widen it, or do not trust its interval.", style="yellow")
+    for key, of, found_value in zip(found.keys, ranges, found.estimates, strict=True):
+        if found_value.high - found_value.low > of.high - of.low:
+            say(f"{key} cannot be told from this record: its interval is wider than its range.", style="yellow")
     output.print(table(found))
     with writing(out):
         out.mkdir(parents=True, exist_ok=True)
