@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import platform
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -51,6 +52,7 @@ def report(minutes: float, outcomes: list[Outcome]) -> str:
 
 
 def main() -> int:
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # children would ignore it, too, where we were told to
     minutes = float(sys.argv[1]) if len(sys.argv) > 1 else HOUR
     first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
     outcomes: list[Outcome] = []

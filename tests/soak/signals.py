@@ -36,12 +36,8 @@ def interruptions(count: int, seed: int = 0) -> Outcome:
 
 
 def _started(*arguments: str) -> subprocess.Popen[bytes]:
-    """With the default handler of Ctrl+C, whatever this process was started with."""
     return subprocess.Popen(
-        [sys.executable, "-m", "app", *arguments],
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+        [sys.executable, "-m", "app", *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     )
 
 
