@@ -16,6 +16,7 @@ import numpy as np
 from model.analysis.ride import imaginary_share
 from model.analysis.spectrum import amplitude_spectrum, excitation
 from model.config.config import Config, load_config
+from model.simulation.accuracy import APART_ALLOWED
 from model.simulation.simulate import simulate
 from model.simulation.trajectory import Trajectory
 
@@ -193,7 +194,9 @@ def run_figures(config: Config) -> Figures:
     """Run a configuration on waves for as long as its figures need. Raises StudyError."""
     frequency = excitation(config)
     assert frequency is not None  # there are waves
-    run = simulate(config.replace({"simulation.duration": SETTLING + (RUN_IN + WAVES) / frequency}))
+    lasting = config.replace({"simulation.duration": SETTLING + (RUN_IN + WAVES) / frequency})
+    held = any(config.value(key) for key in BAUMGARTE)
+    run = simulate(lasting, apart_allowed=APART_ALLOWED if held else np.inf)
     if not run.complete:
         raise StudyError(f"A run of the study is not complete: {run.status}. {run.advice}")
     return figures_of(run, frequency)

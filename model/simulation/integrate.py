@@ -100,6 +100,7 @@ class Integration:
         self.system, self.lanes, self.road = system, in_lanes(system), road
         self.duration, self.rate = duration, rate
         self.integrator, self.rtol, self.atol = integrator, rtol, atol
+        self.apart_allowed = APART_ALLOWED
         self.samples = make_samples(system, capacity or sample_count(duration, rate))
         self._memory = Memory(y.copy(), np.zeros_like(y), np.zeros_like(y), np.zeros((STAGES, len(y))))
         self._work = make_work(system)
@@ -214,7 +215,7 @@ class Integration:
         should_stop: asked where a single step of SciPy's takes longer than that; true ends it where it began.
         """
         t_stop = min(t_stop, self.duration)
-        bounds = self._longest(), APART_ALLOWED, *self._valleys()
+        bounds = self._longest(), self.apart_allowed, *self._valleys()
         span = Span(float(self.rate), float(self.duration), float(t_stop), *bounds)
         problem = self.lanes, self.road, self._work, self._memory
         kept = self.samples, self._extremes, self._flanks, self._clock
@@ -302,7 +303,7 @@ class Integration:
                 t = clock.recorded / self.rate
                 row = clock.recorded - clock.taken
                 record(self.lanes, self.road, t, self._whole(within(t)), dy, self._work, self.samples, row)
-                if self.samples.residual[row] > APART_ALLOWED:
+                if self.samples.residual[row] > self.apart_allowed:
                     clock.status, clock.apart = Status.JOINTS_APART, self.samples.residual[row]
                     return
                 note(self.lanes, self._work, self._whole(within(t)), dy[RISING], self._extremes, t)

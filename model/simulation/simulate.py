@@ -17,7 +17,7 @@ from model.config.config import Config
 from model.dynamics.equilibrium import rest_pose
 from model.dynamics.lanes import pack
 from model.dynamics.vehicle import System, build_system
-from model.simulation.accuracy import ENERGY_ALLOWED, advice, energy_missing
+from model.simulation.accuracy import APART_ALLOWED, ENERGY_ALLOWED, advice, energy_missing
 from model.simulation.trajectory import RunStatistics, Trajectory
 
 if TYPE_CHECKING:
@@ -71,11 +71,13 @@ def simulate(
     config: Config,
     on_progress: Callable[[float], None] | None = None,
     should_stop: Callable[[], bool] | None = None,
+    apart_allowed: float = APART_ALLOWED,
 ) -> Trajectory:
     """The whole run of a configuration.
 
     on_progress: gets the part done, 0…1, when the model is compiled and after each chunk. should_stop: asked after each
     chunk, and at least every 0.1 s; true ends the run.
+    apart_allowed: m that joints may be apart; infinite for who wants to see them drift.
     A run that diverges, whose joints come apart or that is stopped is returned as far as it was good, with a status
     and advice; one that does not account for its energy says so too.
     Raises NoEquilibriumError when the vehicle has no rest pose to start from.
@@ -92,6 +94,7 @@ def simulate(
     y, static_load = starting_state(system)
     settings = config.simulation
     run = Integration.of(settings, system, road.table, y, settings.duration)
+    run.apart_allowed = apart_allowed
     stopped = False
     while not stopped and run.advance(run.t + CHUNK, should_stop) is Status.RUNNING:
         if on_progress is not None:
