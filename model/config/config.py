@@ -18,7 +18,16 @@ from model.config.parameters import PARAMETER, PARAMETERS, PART_LIMIT, Parameter
 from model.config.profile_files import ProfileFile, read_profile_file
 from model.config.profile_points import FILE_LIMIT, PointsError
 from model.config.strict_yaml import dump_yaml, parse_yaml
-from model.config.validation import EXCLUSIVE, ConfigError, Fault, check_values, convert, unknown_fault, wheel_positions
+from model.config.validation import (
+    EXCLUSIVE,
+    ConfigError,
+    Fault,
+    check_values,
+    convert,
+    shorten,
+    unknown_fault,
+    wheel_positions,
+)
 from model.files import read_file
 
 __all__ = [
@@ -366,13 +375,16 @@ def load_config(
 def read_profile(path: str | Path, columns: Any = (), units: Any = (), key: str = "road.file") -> ProfileFile:
     """The profile in a file; columns and units as in a configuration. Raises ConfigError for `key`."""
     place = key.removesuffix("file")
+    given = {"columns": columns, "units": units}
+    for name, value in given.items():
+        parameter = PARAMETER[f"road.{name}"]
+        try:
+            given[name] = convert(parameter, value)
+        except ValueError:
+            message = f"{shorten(value)} is not allowed; give {parameter.allowed}"
+            raise ConfigError([Fault(f"{place}{name}", shorten(value), message)]) from None
     try:
-        columns, units = convert(PARAMETER["road.columns"], columns), convert(PARAMETER["road.units"], units)
-    except ValueError:
-        allowed = f"give {PARAMETER['road.columns'].allowed}, and {PARAMETER['road.units'].allowed}"
-        raise ConfigError([Fault(f"{place}columns", "", f"columns or units are not allowed; {allowed}")]) from None
-    try:
-        return read_profile_file(read_file(path, FILE_LIMIT), columns, units)
+        return read_profile_file(read_file(path, FILE_LIMIT), given["columns"], given["units"])
     except PointsError as error:
         message = f"{error} ({Path(path).name[:80]})"
     except (OSError, ValueError) as error:

@@ -141,7 +141,8 @@ def _of_sheet(sheet: _Sheet, columns: Sequence[str], units: Sequence[str]) -> Pr
     check(x, y, lambda row: f"line {sheet.lines[row]}")
     _refuse_one_column_of_decimal_commas(sheet, x, y)
     named = "no unit named, read as m" if along is None and up is None else _units_text(along or "m", up or "m")
-    if len(sheet.columns) > 2 or columns:
+    known = _words(sheet.columns[first]) & ALONG and _words(sheet.columns[second]) & UP
+    if len(sheet.columns) > 2 or columns or (sheet.headed and not known):
         named += f"; columns {sheet.name(first)} and {sheet.name(second)}"
     return _read(x, y, named, len(sheet.rows))
 

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from model.config.config import ConfigError, read_profile
 from model.config.profile_files import read_profile_file
 from model.config.profile_points import POINT_LIMIT, PointsError, points, points_text
 
@@ -375,3 +376,15 @@ def test_heights_in_mm_and_in_inches_are_the_same_road():
 )
 def test_files_that_are_refused(name, words):
     assert refused((FIELD / name).read_bytes()).startswith(words)
+
+
+def test_unknown_headings_are_told():
+    """A column of time is not taken for a distance without a word."""
+    assert read_profile_file(b"time,foo\n0,0\n5,0.1\n").said.endswith("columns time and foo")
+    assert "columns" not in read_profile_file(b"x,height\n0,0\n5,0.1\n").said
+
+
+def test_a_unit_that_is_not_known_is_told_with_its_key(tmp_path):
+    (tmp_path / "road.csv").write_text("x,y\n0,0\n5,0.1\n")
+    with pytest.raises(ConfigError, match=r"road\.units: .*'yd'.* is not allowed; give units"):
+        read_profile(tmp_path / "road.csv", units={"x": "yd", "y": "m"})
