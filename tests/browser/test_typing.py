@@ -41,7 +41,7 @@ def test_a_typed_value_is_one_run_at_enter_on_leaving_and_after_a_pause(at_rest:
 
 
 def test_a_refused_value_leaves_what_was_there_before(at_rest: Explorer) -> None:
-    before = at_rest.run_number()
+    before = at_rest.wait_until_still(at_rest.run_number)  # the run that came to rest after the test before
     for end in ("Enter", "Tab", ""):
         speed = type_into(at_rest, "Speed, km/h", "200", end)
         expect(at_rest.page.get_by_text("Speed: 200 km/h is not allowed. Give 0.5 to 100 km/h.")).to_be_visible()
@@ -52,7 +52,7 @@ def test_a_refused_value_leaves_what_was_there_before(at_rest: Explorer) -> None
 
 
 def test_what_is_no_number_is_refused_and_not_misread(at_rest: Explorer) -> None:
-    before = at_rest.run_number()
+    before = at_rest.wait_until_still(at_rest.run_number)
     for text, said in (
         ("", "Speed: a value is needed. Give 0.5 to 100 km/h."),
         ("abc", "Speed: 'abc' is not allowed. Give 0.5 to 100 km/h."),

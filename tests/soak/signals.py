@@ -57,7 +57,7 @@ def _interrupted(folder: Path, rng: np.random.Generator) -> tuple[str, str]:
         process.send_signal(signal.SIGINT)
         status = process.wait(60)
     left = [path.name for path in folder.iterdir() if path.name.startswith(".interrupted")]
-    if status not in (0, INTERRUPTED) or left:
+    if status not in (0, INTERRUPTED, -signal.SIGINT) or left:
         return "", f"Ctrl+C: exit status {status}, left {left}"
     return f"Ctrl+C: exit status {status}, file {'there' if out.exists() else 'not there'}", _not_whole(out)
 
