@@ -4,6 +4,7 @@ be as wanted, and whatever is wrong is one error with a reason.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import IO
@@ -40,7 +41,10 @@ class Npz:
         shape, dtype = self._declared(name)
         if shape != () or dtype.kind != "U" or dtype.itemsize > 4 * longest:
             raise NpzError(f"{name} must be a text of at most {longest} characters")
-        return str(self._values(name).item())
+        values = self._values(name)
+        if not dtype.isnative or (np.frombuffer(values.tobytes(), np.uint32) > sys.maxunicode).any():
+            raise NpzError(f"{name} holds what are no characters")
+        return str(values.item())
 
     def number(self, name: str) -> int | float:
         """A count, which may be 0, or a fraction above 0. Raises NpzError."""

@@ -176,3 +176,11 @@ def test_a_heading_may_not_be_of_any_length(members: dict[str, bytes]) -> None:
     long = b"\x93NUMPY\x02\x00" + (3_000_000).to_bytes(4, "little") + bytes(3_000_000)
     with pytest.raises(NpzError, match="written in a way"):
         Npz(io.BytesIO(packed({"steps.npy": long}))).number("steps")
+
+
+def test_a_text_of_what_are_no_characters_is_refused():
+    """Python makes a text of them, at which others fail in ways that no one expects."""
+    buffer = io.BytesIO()
+    np.savez(buffer, text=np.array([0x110000], np.uint32).view("<U1").reshape(()))
+    with pytest.raises(NpzError, match="text holds what are no characters"):
+        Npz(buffer).text("text", 10)
