@@ -6,6 +6,7 @@ of a figure's variance when all keys vary at once, evenly over their ranges: of 
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -84,15 +85,45 @@ def _trajectory(keys: int, random: np.random.Generator) -> np.ndarray:
 
 
 def sobol(function: Function, keys: int, samples: int, seed: int) -> Indices:
-    """Indices of so many keys from samples × (keys + 2) points; samples: a power of 2."""
-    from scipy.stats import sobol_indices, uniform  # a second to load
+    """Indices of so many keys from samples × (keys + 2) points; samples: a power of 2.
 
-    found = sobol_indices(
-        func=lambda x: function(x.T), n=samples, dists=[uniform()] * keys, rng=np.random.default_rng(seed)
-    )
-    bounds = found.bootstrap(confidence_level=CONFIDENCE, n_resamples=RESAMPLES)
-    first, total = bounds.first_order.confidence_interval, bounds.total_order.confidence_interval
-    return Indices(*map(np.atleast_2d, (found.first_order, *first, found.total_order, *total)))
+    The bounds are bootstrapped here, as those of SciPy's own result cannot be drawn from a seed.
+    """
+    from scipy.stats import DegenerateDataWarning, bootstrap, sobol_indices, uniform  # a second to load
+
+    random = np.random.default_rng(seed)
+    values: list[np.ndarray] = []
+
+    def indices(f_A: np.ndarray, f_B: np.ndarray, f_AB: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        values.extend((f_A, f_B, f_AB))
+        return _saltelli(f_A, f_B, f_AB)
+
+    found = sobol_indices(func=lambda x: function(x.T), n=samples, dists=[uniform()] * keys, rng=random, method=indices)
+    with warnings.catch_warnings(), np.errstate(invalid="ignore"):
+        warnings.simplefilter("ignore", DegenerateDataWarning)  # of shares that are the same in every resample
+        bounds = bootstrap(
+            [np.arange(samples)],
+            lambda chosen: np.stack(_saltelli(*(value[..., chosen] for value in values))),
+            n_resamples=RESAMPLES,
+            confidence_level=CONFIDENCE,
+            rng=random,
+        ).confidence_interval
+    first, total = np.atleast_2d(found.first_order), np.atleast_2d(found.total_order)
+    known = np.isfinite(bounds[0]) & np.isfinite(bounds[1])
+    (first_low, total_low), (first_high, total_high) = np.where(known, bounds, np.stack([first, total]))
+    return Indices(first, first_low, first_high, total, total_low, total_high)
+
+
+def _saltelli(at_a: np.ndarray, at_b: np.ndarray, at_ab: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """First and total indices (S, K) by Saltelli et al. 2010, table 2, (b) and (f).
+
+    Of S figures at N points a (S, N), at as many points b, and at each a with one key taken from b (K, S, N).
+    """
+    variance = np.var(np.concatenate([at_a, at_b], axis=-1), axis=-1)
+    variance[variance == 0] = np.inf  # what nothing changes has no shares
+    first = np.mean(at_b * (at_ab - at_a), axis=-1) / variance
+    total = np.mean((at_a - at_ab) ** 2, axis=-1) / (2 * variance)
+    return first.T, total.T
 
 
 def sensitivity(

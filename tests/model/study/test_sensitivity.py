@@ -30,7 +30,19 @@ def test_indices_of_the_ishigami_function_lie_within_their_bounds():
     assert (found.first_high >= first).all()
     assert (found.total_low <= total).all()
     assert (found.total_high >= total).all()
-    np.testing.assert_array_equal(found.total, sobol(ishigami, 3, 1024, seed=1).total)
+
+
+def test_indices_and_their_bounds_are_the_same_for_the_same_seed():
+    first, again, other = (sobol(ishigami, 3, 16, seed) for seed in (1, 1, 2))
+    for name in vars(first):
+        np.testing.assert_array_equal(getattr(first, name), getattr(again, name), err_msg=name)
+        assert not np.array_equal(getattr(first, name), getattr(other, name)), name
+
+
+def test_a_figure_that_nothing_changes_has_no_shares():
+    found = sobol(lambda points: np.stack([points[:, 0], 0 * points[:, 0]]), 2, 16, seed=1)
+    np.testing.assert_array_equal(found.total[1], 0)
+    np.testing.assert_array_equal([found.first[1], found.total_low[1], found.total_high[1]], 0)
 
 
 def test_the_screening_finds_slopes_and_what_depends_on_others():
