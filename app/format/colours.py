@@ -1,7 +1,8 @@
 """Colours: one for each wheel, the same in plot, arrow and label, and those of the scene; light and dark.
 
-Road wheels run through warm hues, imaginary wheels through cool ones, front to rear; within a family lightness
-changes with the hue, so that neighbours stay apart for colour-blind eyes and in grey print. Made in OKLCH
+Road wheels run through warm hues, imaginary wheels through cool ones. From the front wheel to the rear each is lighter
+than the one before, by so much that colour-blind eyes and grey print tell any two of six apart; the ends of both
+families were searched for that (tests/app/format/test_colours.py says how far apart they are). Made in OKLCH
 (Ottosson 2020), where equal steps look equal.
 """
 
@@ -39,10 +40,14 @@ class _Family(NamedTuple):
     rear: tuple[float, float, float]
 
 
-_ROAD = {False: _Family((0.35, 0.15, -8.0), (0.70, 0.16, 76.0)), True: _Family((0.56, 0.17, 0.0), (0.89, 0.14, 92.0))}
+# Of a light background, and of a dark one
+_ROAD = {
+    False: _Family((0.25, 0.175, -3.0), (0.75, 0.17, 80.0)),
+    True: _Family((0.478, 0.167, -20.0), (0.958, 0.175, 71.0)),
+}
 _IMAGINARY = {
-    False: _Family((0.34, 0.15, 277.0), (0.69, 0.13, 172.0)),
-    True: _Family((0.58, 0.16, 278.0), (0.90, 0.11, 172.0)),
+    False: _Family((0.25, 0.15, 274.0), (0.735, 0.13, 188.0)),
+    True: _Family((0.472, 0.19, 286.0), (0.96, 0.077, 185.0)),
 }
 
 
