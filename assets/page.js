@@ -18,7 +18,8 @@ const set = (box, text) => {
 };
 const pass = (box) => box.dispatchEvent(new Event('input', {bubbles: true}));
 const tell = (name, text) => {
-  const id = document.getElementById('trackride-style').dataset[name];
+  const id = document.getElementById('trackride-style')?.dataset[name];
+  if (!id) return;
   const sign = document.querySelector(`label[for="${id}"]`).closest('[data-trackride="page"] ~ div').querySelector('input');
   set(sign, text);
   pass(sign);
@@ -33,6 +34,7 @@ window.trackrideInTurn ??= (() => {
     setTimeout(act, wait);
   };
 })();
+window.trackrideTell = tell;  // for plots.js
 // A tab whose page is loaded anew goes on where it was, whatever other tabs of this browser have stored since
 trackrideInTurn(() => tell('visit', sessionStorage.getItem('trackride') ?? 'null'));
 if (!document.body.dataset.trackride) {
@@ -128,6 +130,116 @@ if (!document.body.dataset.trackride) {
   const night = matchMedia('(prefers-color-scheme: dark)');
   night.addEventListener('change', wish);
   wish();
+  // Names and roles that viser's parts lack: screen readers say them, and folders are reached by Tab. Looked at four
+  // times a second, since viser makes parts anew: what has its name already is let alone
+  const KEYS = {arrowright: '→', arrowleft: '←', space: 'Space'};  // as the palette is to write them
+  const give = (part, attributes) => Object.entries(attributes).forEach(([name, value]) => {
+    if (part && part.getAttribute(name) !== value) part.setAttribute(name, value);
+  });
+  const nameParts = () => {
+    document.querySelectorAll('label[for]').forEach((label) => {
+      const name = label.textContent, part = document.getElementById(label.htmlFor);
+      if (part?.matches('.mantine-Slider-root')) {
+        give(part.querySelector('[role="slider"]'), {'aria-label': name});
+        give(part.parentElement.querySelector('input[type="text"]'), {'aria-label': `${name}, as a number`});
+      } else if (!part) {
+        const buttons = label.closest('div[style]')?.nextElementSibling?.querySelector('button')?.parentElement;
+        give(buttons, {role: 'group', 'aria-label': name});
+      }
+    });
+    document.querySelectorAll('button').forEach((button) => {
+      const [sign, name] = button.textContent.trim().split(' ');
+      if (['●', '○'].includes(sign) && name) give(button, {'aria-pressed': String(sign === '●'), 'aria-label': name});
+      if (button.textContent === '✕') give(button, {'aria-label': 'Forget this run'});
+      if (button.textContent === '|◀') give(button, {'aria-label': 'To the start'});
+    });
+    for (const [icon, name] of [
+      ['list-search', 'All commands and their keys'], ['adjustments', 'Settings of viser'], ['maximize', 'This plot alone'],
+    ]) document.querySelectorAll(`.tabler-icon-${icon}`).forEach((drawn) => give(drawn.closest('button'), {
+      'aria-label': name, 'data-trackride-icon': icon,
+    }));
+    document.querySelectorAll('[data-trackride="panel"] .mantine-Paper-root svg[class*="tabler-icon-chevron-"]').forEach((arrow) => {
+      const open = arrow.classList.contains('tabler-icon-chevron-up');
+      give(arrow, {'aria-hidden': 'true'});
+      give(arrow.parentElement.parentElement, {'data-trackride-folder': open ? 'open' : 'closed'});
+      give(arrow.parentElement, {role: 'button', tabindex: '0', 'aria-expanded': String(open)});
+    });
+    document.querySelectorAll('.mantine-CloseButton-root').forEach((button) => give(button, {'aria-label': 'Close'}));
+    document.querySelectorAll('canvas[data-engine]').forEach((canvas) => give(canvas, {
+      role: 'img', 'aria-label': 'The vehicle on its road, in three dimensions',
+    }));
+    const palette = document.createTreeWalker(document.querySelector('.mantine-Spotlight-body') ?? new Text(), NodeFilter.SHOW_TEXT);
+    while (palette.nextNode()) {
+      const {currentNode: text} = palette, plain = text.data.replace(/\b(arrowright|arrowleft|space)$/, (key) => KEYS[key]);
+      if (text.data !== plain) text.data = plain;
+    }
+  };
+  setInterval(nameParts, 250);
+  document.addEventListener('keyup', nameParts);  // of the palette, which filters at each key
+  document.addEventListener('keydown', (event) => {
+    if (['Enter', ' '].includes(event.key) && event.target.matches?.('[data-trackride-folder] > [role="button"]')) {
+      event.preventDefault();
+      event.stopImmediatePropagation();
+      event.target.click();
+    }
+  }, true);
+  // A hint stands beside the panel that its control is in, and goes at the first click or key until the pointer moves on
+  let hinted = null;  // row of the control that the pointer is on
+  const rowOf = (part) => {
+    const label = part.closest?.('div[style*="flex-shrink"]');
+    return label?.parentElement ?? part.closest?.('.mantine-Flex-root, button') ?? null;
+  };
+  document.addEventListener('mouseover', ({target}) => {
+    const on = rowOf(target);
+    if (on === hinted) return;
+    hinted = on;
+    delete root.dataset.trackrideBusy;
+  });
+  const quiet = () => root.dataset.trackrideBusy = '';
+  document.addEventListener('pointerdown', quiet, true);
+  document.addEventListener('keydown', quiet, true);
+  const placeHint = () => {
+    const hint = document.querySelector('.mantine-Tooltip-tooltip');
+    const owner = hint && (document.querySelector(`[aria-describedby="${hint.id}"]`) ?? hinted);
+    if (!owner) return;
+    const row = (rowOf(owner) ?? owner).getBoundingClientRect(), {offsetWidth: wide, offsetHeight: high} = hint, GAP = 12;
+    const panel = (owner.closest('[data-dock-region], .mantine-Paper-root:not(.mantine-Paper-root *)') ?? owner)
+      .getBoundingClientRect();
+    let [x, y] = [panel.right + GAP, row.top];
+    if (x + wide > innerWidth) x = panel.left - wide - GAP;
+    if (x < 0 || panel.width > 0.6 * innerWidth) [x, y] = [row.left, row.top - high - GAP];
+    if (y < 0) y = row.bottom + GAP;
+    root.style.setProperty('--trackride-hint-x', `${Math.min(Math.max(x, 4), innerWidth - wide - 4)}px`);
+    root.style.setProperty('--trackride-hint-y', `${Math.min(Math.max(y, 4), innerHeight - high - 4)}px`);
+  };
+  const hints = new MutationObserver(placeHint);
+  const watchHints = () => document.querySelectorAll('[data-portal="true"]:not([data-trackride])').forEach((portal) => {
+    portal.dataset.trackride = 'hints';
+    hints.observe(portal, {childList: true});
+  });
+  setInterval(watchHints, 250);
+  // The size of the page and the width of the view, px: the server shares the page among the panels and tells how
+  const {documentElement: root} = document;
+  const view = () => root.querySelector('canvas[data-engine]')?.parentElement ?? root;
+  let told_size = '';
+  const tellSize = () => {
+    const size = JSON.stringify([innerWidth, innerHeight, view().clientWidth]);
+    if (size !== told_size) trackrideInTurn(() => tell('size', told_size = size));
+  };
+  customElements.define('trackride-layout', class extends HTMLElement {
+    connectedCallback() {
+      const [of, scale, plots, columns, left, height] =
+        ['for', 'scale', 'plots', 'columns', 'left', 'height'].map((name) => this.getAttribute(name));
+      [root.dataset.plots, root.dataset.columns] = [plots, columns];
+      Object.entries({scale, columns, left: `${left}px`, height: `${height}px`})
+        .forEach(([name, value]) => root.style.setProperty(`--trackride-${name}`, value));
+      view().closest('div[style*="inset"], div[style*="bottom: 0px"]')?.setAttribute('data-trackride', 'view');
+      if (of === `${innerWidth} ${innerHeight}`) root.dataset.trackrideStands = '';
+    }
+  });
+  addEventListener('resize', tellSize);
+  setInterval(tellSize, 250);  // a seam that is moved changes the view only
+  tellSize();
   customElements.define('trackride-title', class extends HTMLElement {
     connectedCallback() { document.title = this.getAttribute('of'); }
   });

@@ -177,6 +177,9 @@ if (!window.trackridePlots) {
   };
   const meet = (chart) => {
     met.add(chart);
+    const around = chart.root.closest('.uplot-container')?.parentElement;
+    around?.setAttribute('data-trackride', 'chart');
+    around?.parentElement.setAttribute('data-trackride', 'charts');  // plots.css puts them side by side there
     chart.root.classList.add(chart.cursor.sync.key);
     chart.root.querySelector('.u-title').title = 'Drag across the plot to zoom in, double-click to see all';
     const legend = chart.root.querySelector('.u-legend');

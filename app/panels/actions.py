@@ -122,6 +122,9 @@ class Actions(Protocol):
     def set_dark(self, dark: bool) -> None:
         """Choose the look of the page."""
 
+    def enlarge_plots(self) -> None:
+        """Let the plots stand over the view, or put them back."""
+
     # Spectrum
 
     def redraw_spectrum(self) -> None:
@@ -141,6 +144,9 @@ class Actions(Protocol):
 
     def set_in_view(self, in_view: bool) -> None:
         """A page in the background stands still."""
+
+    def set_page_size(self, width: int, height: int, view: int) -> None:
+        """The page, and its 3-D view, have this width and height, and this width, px."""
 
     def set_in_front(self, tabs: frozenset[str]) -> None:
         """Only the tabs that are seen keep up with a drag."""

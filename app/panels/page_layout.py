@@ -1,88 +1,87 @@
-"""How the panels share the page. viser does not tell the size of the page: it follows from that of the 3-D view."""
+"""How the panels share the page. The page tells its size (page.js); the sizes follow from it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import ceil
+from typing import Literal
 
-LEFT = 345  # px, width of the control panel
-RIGHT = 470  # px, width of the plots at least…
-NARROW = 320  # … and where the page has no room for that beside the player
-WIDEST = 760  # px, width of the plots at most
-PLOTS_SHARE = 0.3  # of the page's width
+Plots = Literal["beside", "under", "large"]  # where they stand: beside the view, under it, or over it
+
+USUAL = 1600, 900  # px, width and height of a page on which type has its usual size
+GROWTH = 0.45  # how much of what a page is larger than that goes into its type
+LARGEST = 1.6  # times as large as usual: type on the largest page
+LEFT, NARROW_LEFT = 345, 316  # px of usual type, width of the control panel, and where the plots are under the view
+NARROW_PAGE = 1200  # px of usual type: on a page less wide the plots go under the view
+VIEW_SHARE = 0.56  # of the height that is the view's then
+RIGHT, WIDEST = 470, 900  # px of usual type, width of the plots at least, and at most
+PLOTS_SHARE = 0.32  # of the page's width
+DOCKED_UNDER = 96  # px that viser is told for plots that page.css puts under the view: the least it takes
 SEAMS = 8  # px that viser puts between docked panels and the view
-PLAYER, SHORT_PLAYER = 560, 300  # px, width of the player at most, and at least
+PLAYER, SHORT_PLAYER = 560, 260  # px of usual type, width of the player at most; px, at least
 MARGINS = 24  # px beside it
-MODES = 485  # px beside the spectrum: three boxes and the table of a paper's vehicle's modes
-PLOTS_HEAD = 66  # px above the plots in their panel
-AXIS_NAME = 16  # px that the name of the axis takes below the last plot
-LOWEST, HIGHEST = 110, 700  # px, of a chart
-CARD = 46  # px that one plot takes beyond its chart: title, legend, margins
-SCALES = (0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.25, 2.5, 3.0, 3.5, 4.0)  # screen pixels for each px
+FOOT = 200  # px of usual type below large plots: the player is there
+COLUMN = 340  # px of usual type that a chart needs to stand beside another
+# All from here on in px of usual type
+MODES = 520  # beside the spectrum: its boxes and the table of a paper's vehicle's modes
+PLOTS_HEAD = 66  # above the plots in their panel
+AXIS_NAME = 16  # that the name of the axis takes below the last plot
+LOWEST, HIGHEST = 110, 700  # of a chart
+CARD = 46  # that one plot takes beyond its chart: title, legend, margins
 
 
 @dataclass(frozen=True)
 class PageLayout:
     """Sizes, px."""
 
-    right: int  # width of the plots' panel
+    width: int  # of the page
+    height: int
+    scale: float  # times its usual size: type, and what holds it
+    left: int  # width of the control panel
+    docked: int  # width of the plots' panel where it stands beside the view
+    plots: Plots
+    right: int  # width of the plots' panel as it stands
+    plots_height: int  # its height
     player_x: int  # left edge of the player, from the view's
     player_width: int
-    page_height: int
+    below: int  # from the lower edge of the view to the page's
+
+    @property
+    def columns(self) -> int:
+        """Charts side by side."""
+        return max(int(self.right / (COLUMN * self.scale)), 1) if self.plots != "beside" else 1
+
+    def chart_height(self, plots: int, taken: float = 0.0) -> int:
+        """Height of each of so many charts that together fill their panel; taken: px of usual type for other things."""
+        rows = ceil(max(plots, 1) / self.columns)
+        room = self.plots_height / self.scale - PLOTS_HEAD - AXIS_NAME - taken
+        return int(self.scale * min(max(room / rows - CARD, LOWEST), HIGHEST))
+
+    def spectrum_height(self) -> int:
+        """Height of the chart of the spectrum: half of its panel, or more if boxes and table of modes leave more."""
+        half = (self.plots_height / self.scale - PLOTS_HEAD - AXIS_NAME) / 2 - CARD
+        whole = self.plots_height / self.scale - PLOTS_HEAD - AXIS_NAME - MODES - CARD
+        return int(self.scale * min(max(half, whole, LOWEST), HIGHEST))
 
 
-class Screen:
-    """The page behind a view that is at first as wide as the page, and narrower once both panels are docked."""
+def page_layout(width: int, height: int, view: int | None = None, *, large: bool = False) -> PageLayout:
+    """Sizes for a page, px.
 
-    def __init__(self, width: int, height: int) -> None:
-        """Size of the view before docking, screen pixels."""
-        self._full_width = width
-        self._seen = (width, height)
-        self._scale: float | None = None  # screen pixels for each px, once it is known
-        self._right = RIGHT
-
-    def first(self) -> PageLayout:
-        """Sizes to begin with, as if a screen pixel were a px."""
-        width, height = self._seen
-        return _layout(width - LEFT - self._right - SEAMS, height, self._right)
-
-    def update(self, width: int, height: int) -> PageLayout | None:
-        """New sizes when the view's size, in screen pixels, has changed with the page or the panels; else None."""
-        before, self._seen = self._seen, (width, height)
-        if self._seen == before or not width or not height:
-            return None
-        if self._scale is None:
-            measured = (self._full_width - width) / (LEFT + RIGHT + SEAMS)
-            nearest = min(SCALES, key=lambda scale: abs(scale - measured))
-            if abs(nearest - measured) > 0.02 * nearest:
-                return None  # not yet docked
-            self._scale = nearest
-            return self._shared(width, height)
-        if abs(width * before[1] / (height * before[0]) - 1) < 0.005:
-            self._scale *= height / before[1]  # viser draws coarser or finer now; the page is as it was
-            return None
-        if height != before[1]:  # the page itself has another size; the user moved no seam
-            return self._shared(width, height)
-        return _layout(width / self._scale, height / self._scale, self._right)
-
-    def _shared(self, width: int, height: int) -> PageLayout:
-        """Sizes with the plots as wide as suits the page. width, height: of the view now, screen pixels."""
-        assert self._scale is not None
-        view, before = width / self._scale, self._right
-        wanted = min(max(RIGHT, PLOTS_SHARE * (LEFT + view + before + SEAMS)), WIDEST)
-        self._right = int(max(min(wanted, view + before - SHORT_PLAYER - MARGINS), NARROW))
-        return _layout(view + before - self._right, height / self._scale, self._right)
-
-
-def _layout(view_width: float, page_height: float, right: int) -> PageLayout:
-    player = int(min(max(view_width - MARGINS, SHORT_PLAYER), PLAYER))
-    return PageLayout(right, max(int((view_width - player) / 2), 0), player, int(page_height))
-
-
-def chart_height(page_height: int, plots: int) -> int:
-    """Height of each of so many charts that together fill a page of this height, px."""
-    return int(min(max((page_height - PLOTS_HEAD - AXIS_NAME) / max(plots, 1) - CARD, LOWEST), HIGHEST))
-
-
-def spectrum_height(page_height: int) -> int:
-    """Height of the chart of the spectrum, px: half a page, or more if its boxes and the table of modes leave more."""
-    return max(chart_height(page_height, 2), chart_height(page_height - MODES, 1))
+    view: width of the view, where the user has moved a seam; large: the plots stand over the view.
+    """
+    larger = min(width / USUAL[0], height / USUAL[1]) - 1
+    scale = round(min(max(1 + GROWTH * larger, 1.0), LARGEST), 2)
+    under = width < NARROW_PAGE * scale
+    left = int(scale * (NARROW_LEFT if under else LEFT))
+    docked = int(min(max(RIGHT * scale, PLOTS_SHARE * width), WIDEST * scale))
+    below = int((1 - VIEW_SHARE) * height) if under and not large else 0
+    if below:
+        docked = DOCKED_UNDER
+    view = view or width - left - SEAMS - (0 if below else docked)
+    player = int(max(min(view - MARGINS, PLAYER * scale), SHORT_PLAYER))
+    right, plots_height = width - left, height - int(FOOT * scale) if large else below
+    plots: Plots = "large" if large else "under"
+    if not (large or under):
+        plots, right, plots_height = "beside", docked, height
+    x = max(int((view - player) / 2), 0)
+    return PageLayout(width, height, scale, left, docked, plots, right, plots_height, x, player, below)

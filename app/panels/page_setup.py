@@ -11,6 +11,7 @@ from app.format.assets import asset
 from app.format.markup import element, joined, running, style
 from app.format.parameters import choice_words
 from app.panels.controls import PRECISION
+from app.panels.page_layout import PageLayout
 from model.config.config import Config, SumRoad
 
 BRAND = (28, 108, 178)
@@ -30,6 +31,9 @@ class PageSigns(NamedTuple):
     night: viser.GuiCheckboxHandle  # ticked where the browser is set to dark pages
     visit: viser.GuiTextHandle  # what this tab had stored when its page was loaded anew; "null": nothing
     typed: viser.GuiTextHandle  # JSON: viser's name of a box for numbers, what was typed there and is none, a count
+    size: viser.GuiTextHandle  # JSON: width and height of the page, and the view's width, px
+    at: viser.GuiTextHandle  # JSON: a time in a plot that was clicked, s, and a count
+    layout: viser.GuiHtmlHandle  # see layout_html
     store: viser.GuiHtmlHandle  # what runs there stores something in the tab
     title: viser.GuiHtmlHandle  # see title_html
 
@@ -46,6 +50,9 @@ def add_page(gui: viser.GuiApi) -> PageSigns:
     night = gui.add_checkbox("Dark pages", False)
     visit = gui.add_text("Visit", "")
     typed = gui.add_text("Typed", "")
+    size = gui.add_text("Size", "")
+    at = gui.add_text("At", "")
+    layout = gui.add_html("")
     store = gui.add_html("")
     rules = style(
         asset("page.css"),
@@ -54,11 +61,13 @@ def add_page(gui: viser.GuiApi) -> PageSigns:
         data_night=night._impl.uuid,
         data_visit=visit._impl.uuid,
         data_typed=typed._impl.uuid,
+        data_size=size._impl.uuid,
+        data_at=at._impl.uuid,
         data_decimals=str(PRECISION),
     )
     intro = element("p", INTRO, class_="trackride-intro")
     page.content = str(joined((running(asset("page.js")), intro, rules)))
-    return PageSigns(in_view, in_front, night, visit, typed, store, title)
+    return PageSigns(in_view, in_front, night, visit, typed, size, at, layout, store, title)
 
 
 def store_visit(signs: PageSigns, state: str) -> None:
@@ -71,6 +80,21 @@ def title_html(config: Config) -> str:
     parts = config.road.parts if isinstance(config.road, SumRoad) else (config.road,)
     road = " + ".join(choice_words(part.type) for part in parts)
     return str(element("trackride-title", of=f"{config.name}, {road} · Trackride"))
+
+
+def layout_html(layout: PageLayout) -> str:
+    """HTML by which the page takes over how its panels share it (page.js, page.css)."""
+    return str(
+        element(
+            "trackride-layout",
+            for_=f"{layout.width} {layout.height}",
+            scale=f"{layout.scale:g}",
+            plots=layout.plots,
+            columns=str(layout.columns),
+            left=str(layout.left),
+            height=str(layout.plots_height),
+        )
+    )
 
 
 def add_hints(gui: viser.GuiApi) -> None:

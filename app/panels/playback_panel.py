@@ -8,10 +8,11 @@ import viser
 
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
+from app.panels.page_layout import PageLayout
 from app.runs.drive import DriveState
 from app.runs.playback import NORMAL_SPEED, SPEEDS, STEP, Playback
 
-HEIGHT = 172  # px
+HEIGHT = 172  # px of usual type (page_layout.py), as the next two
 ONE_ROW, ROW = 390, 27  # px: on a panel less wide the buttons take a second row, of this height
 GAP = 14  # px to the lower edge of the view
 START, BACK, PLAY, PAUSE, ON = "|◀", "◀ Step", "▶ Play", "❚❚ Pause", "Step ▶"
@@ -73,10 +74,11 @@ class PlaybackPanel:
             by_user(lambda event: actions.set_driving(event.target.value.endswith(DRIVE)), actions.fail)
         )
 
-    def place(self, x: int, width: int) -> None:
-        """Float at the foot of the view, px from its left edge."""
-        height = HEIGHT if width >= ONE_ROW else HEIGHT + ROW
-        self._panel.float(x=x, y=-GAP, width=width, height=height)
+    def place(self, layout: PageLayout) -> None:
+        """Float at the foot of the view."""
+        self._panel.float(
+            x=layout.player_x, y=-GAP - layout.below, width=layout.player_width, height=player_height(layout)
+        )
 
     def show(self, playback: Playback) -> None:
         """Show the playback of a run."""
@@ -102,6 +104,20 @@ class PlaybackPanel:
         goes_on = driving and playing
         self._time.visible, self._driven.visible = not goes_on, goes_on
         self._buttons.options = _buttons(driving, playing)
+
+
+def player_height(layout: PageLayout) -> int:
+    """px."""
+    height = HEIGHT if layout.player_width >= ONE_ROW * layout.scale else HEIGHT + ROW
+    return int(height * layout.scale)
+
+
+def covered(layout: PageLayout) -> float:
+    """The share of the view's height, at its foot, that is kept free for the player.
+
+    Beside a view as high as the page there is room for both in any case (app/view3d/camera.py).
+    """
+    return (player_height(layout) + GAP) / (layout.height - layout.below) if layout.plots == "under" else 0.0
 
 
 def driven_text(state: DriveState, playback: Playback) -> str:

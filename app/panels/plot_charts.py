@@ -12,7 +12,8 @@ from app.panels.page_layout import AXIS_NAME
 from app.panels.plot_page import OTHER_KEY, TIME_KEY, peaks_html
 from app.plots.curves import TIME, Curve, Plot
 
-FONT = "11px system-ui, sans-serif"
+FONT = "system-ui, sans-serif"
+LETTERS = 11  # px of usual type (page_layout.py), as the next four
 OPACITY = {"run": "", "baseline": "b0", "static": "c0"}  # of curves by kind, as the last byte of their colour
 FADED = "38"
 WIDTH = 1  # px; the page makes 1.5 of it where a line is not pale (plots.js)
@@ -21,7 +22,8 @@ KEY = {"static": "dotted: at rest", "baseline": "dashed: baseline"}
 GRID = "#80808030"  # on light ground and on dark
 TICKS: viser.uplot.Axis_Ticks = {"size": 4, "width": 1}
 NUDGE = 1e-9  # s. A chart overlooks a new size that comes with new data; it lays out its axes when the range changes
-PADDING = (12, 18, 0, 0)  # px; less on top would cut the highest tick's label
+ALONG, UPRIGHT, APART = 24, 40, 18  # room of the axes, and between two numbers of the upright one
+PADDING = (12, 18, 0, 0)  # less on top would cut the highest tick's label
 
 
 class Charts:
@@ -32,18 +34,22 @@ class Charts:
         self._plots: tuple[Plot, ...] = ()
         self._charts: list[viser.GuiUplotHandle] = []
         self._height = 0
+        self._scale = 1.0
         self._nudge = 0.0
         with container:
             self._peaks = gui.add_html("")
 
-    def show(self, plots: tuple[Plot, ...], height: int) -> None:
-        """Show these plots, each of this height, px. Charts are made anew only when there are other curves."""
+    def show(self, plots: tuple[Plot, ...], height: int, scale: float) -> None:
+        """Show these plots, each of this height, px, with type of so many times its usual size.
+
+        Charts are made anew only when there are other curves, or type of another size.
+        """
         shapes, before = _shapes(plots), _shapes(self._plots)
         restyled = [plot.curves for plot in plots] != [plot.curves for plot in self._plots]
         self._plots = plots
         self._peaks.content = peaks_html(plots)  # before the curves: they are drawn with their peaks
-        if shapes != before:
-            self._height = height
+        if shapes != before or scale != self._scale:
+            self._height, self._scale = height, scale
             self._make()
             return
         resized, self._height = height != self._height, height
@@ -52,7 +58,7 @@ class Charts:
             if restyled:
                 chart.series = _series(plot)
             if resized:
-                chart.height = height + (AXIS_NAME if plot is plots[-1] else 0)
+                chart.height = self._with_axis(height) if plot is plots[-1] else height
             x, *values = plot.data
             x = x.copy()
             x[-1] += self._nudge
@@ -67,9 +73,12 @@ class Charts:
 
     def _chart(self, plot: Plot, with_axis: bool) -> viser.GuiUplotHandle:
         low, high = ({"soft": bound, "mode": 1} for bound in plot.least) if plot.least else ({}, {})
-        axis: viser.uplot.Axis = {"font": FONT, "ticks": TICKS, "grid": {"width": 1, "stroke": GRID}}
-        named: viser.uplot.Axis = {"labelFont": FONT, "labelSize": AXIS_NAME, "labelGap": 0}
-        along, upright = axis | {"size": 24}, axis | named | {"size": 40, "space": 18, "label": plot.unit}
+        scale = self._scale
+        font = f"{LETTERS * scale:g}px {FONT}"
+        axis: viser.uplot.Axis = {"font": font, "ticks": TICKS, "grid": {"width": 1, "stroke": GRID}}
+        named: viser.uplot.Axis = {"labelFont": font, "labelSize": int(AXIS_NAME * scale), "labelGap": 0}
+        along = axis | {"size": int(ALONG * scale)}
+        upright = axis | named | {"size": int(UPRIGHT * scale), "space": int(APART * scale), "label": plot.unit}
         kinds = {curve.kind for curve in plot.curves}
         key = [words for kind, words in KEY.items() if kind in kinds] + [plot.note] * bool(plot.note)
         return self._gui.add_uplot(
@@ -87,9 +96,13 @@ class Charts:
                 "y": False,
                 "points": {"size": 5},
             },
-            height=self._height + (AXIS_NAME if with_axis else 0),
-            padding=PADDING,
+            height=self._with_axis(self._height) if with_axis else self._height,
+            padding=tuple(int(scale * side) for side in PADDING),  # type: ignore[arg-type]
         )
+
+    def _with_axis(self, height: int) -> int:
+        """Height of a chart that names its axis."""
+        return height + int(AXIS_NAME * self._scale)
 
 
 def _shapes(plots: tuple[Plot, ...]) -> list[tuple[object, ...]]:

@@ -18,7 +18,7 @@ import viser
 from app.format.colours import Palette, wheel_palette
 from app.format.markup import element
 from app.panels.actions import Actions
-from app.panels.page_layout import chart_height, spectrum_height
+from app.panels.page_layout import PageLayout
 from app.panels.plot_charts import Charts
 from app.panels.plot_page import now_html, plot_page, tab_html, window_html
 from app.panels.spectrum_panel import BELOW_CHART, SpectrumPanel
@@ -33,7 +33,7 @@ from model.simulation.trajectory import Trajectory
 
 CALM = 0.3  # s
 DRIVE_EVERY = 1.0  # s
-HEADLINE = 30  # px that the headline above the plots of the ride takes
+HEADLINE = 30  # px of usual type that the headline above the plots of the ride takes
 LOADS, RIDE, SPECTRUM, LOAD_MAP, RUNS, TRUST, ABOUT = TABS = (
     "Loads", "Ride", "Spectrum", "Load map", "Runs", "Trust", "About",
 )  # fmt: skip
@@ -53,8 +53,10 @@ class Part:
 class PlotPanel:
     """Tabs in a panel of a client's interface. `runs_tab` is left empty, for others to fill."""
 
-    def __init__(self, client: viser.ClientHandle, panel: Any, page_height: int, dark: bool, actions: Actions) -> None:
-        self._client, self._page_height, self._dark = client, page_height, dark
+    def __init__(
+        self, client: viser.ClientHandle, panel: Any, layout: PageLayout, dark: bool, actions: Actions
+    ) -> None:
+        self._client, self._layout, self._dark = client, layout, dark
         self._run: Trajectory | None = None
         self._baseline: Trajectory | None = None
         self._driving = False
@@ -151,9 +153,9 @@ class PlotPanel:
             self._wheel = wheel
             self._redraw()
 
-    def set_page_height(self, page_height: int) -> None:
-        """Make the charts fill a page of this height, px."""
-        self._page_height = page_height
+    def arrange(self, layout: PageLayout) -> None:
+        """Make the charts fill their panel."""
+        self._layout = layout
         self._redraw()
         self.redraw_spectrum()
 
@@ -194,24 +196,27 @@ class PlotPanel:
         part.show(self._run)
 
     def _show_loads(self, run: Trajectory) -> None:
-        self._plot(run, load_plots, self._loads, self._page_height)
+        self._plot(run, load_plots, self._loads)
 
     def _show_ride(self, run: Trajectory) -> None:
-        self._plot(run, ride_plots, self._ride, self._page_height - HEADLINE)
+        self._plot(run, ride_plots, self._ride, HEADLINE)
 
     def _plot(
         self,
         run: Trajectory,
         plots_of: Callable[[Trajectory, Palette, Trajectory | None, int | None], tuple[Plot, ...]],
         charts: Charts,
-        height: int,
+        taken: float = 0.0,
     ) -> None:
-        """Show curves, and send them at once: the page draws them before it gets the rest."""
+        """Show curves, and send them at once: the page draws them before it gets the rest.
+
+        taken: px of usual type for what else is in their tab.
+        """
         palette = wheel_palette(run.system.n, run.system.m, self._dark)
         wheel = self._wheel if self._wheel is not None and self._wheel < len(palette.wheels) else None
         plots = plots_of(run, palette, self._baseline, wheel)
         with self._client.atomic():
-            charts.show(plots, chart_height(height, len(plots)))
+            charts.show(plots, self._layout.chart_height(len(plots), taken), self._layout.scale)
         self._client.flush()
 
     def _show_comfort(self, run: Trajectory) -> None:
@@ -220,7 +225,7 @@ class PlotPanel:
 
     def _show_spectrum(self, run: Trajectory) -> None:
         colour = wheel_palette(1, 0, self._dark).hull
-        self.spectrum.show(run, self._baseline, colour, spectrum_height(self._page_height))
+        self.spectrum.show(run, self._baseline, colour, self._layout)
         self._say_stretch(SPECTRUM, run)
 
     def _show_map(self, run: Trajectory) -> None:

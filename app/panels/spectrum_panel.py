@@ -9,6 +9,7 @@ import viser
 
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
+from app.panels.page_layout import PageLayout
 from app.panels.plot_charts import Charts
 from app.panels.plot_page import marks_html
 from app.plots.spectrum import named, spectrum_plot
@@ -53,8 +54,8 @@ class SpectrumPanel:
             box.on_update(by_user(lambda event: actions.redraw_spectrum(), actions.fail))
         self._choice.on_update(by_user(lambda event: actions.show_mode(), actions.fail))
 
-    def show(self, run: Trajectory, baseline: Trajectory | None, colour: str, height: int) -> None:
-        """Show a run, beside its baseline, in a CSS colour and a chart of a height, px."""
+    def show(self, run: Trajectory, baseline: Trajectory | None, colour: str, layout: PageLayout) -> None:
+        """Show a run, beside its baseline, in a CSS colour."""
         self._modes = None
         with suppress(NoEquilibriumError):
             self._modes = vehicle_modes(run.config)
@@ -68,7 +69,7 @@ class SpectrumPanel:
             density=self._kind.value == DENSITY,
             at_seat=self._place.value == SEAT,
         )
-        self._charts.show((plot,), height)
+        self._charts.show((plot,), layout.spectrum_height(), layout.scale)
         self._marks.content, self._table.content = marks_html(marks), modes_page(waves, self._modes)
         titles = (NO_MODE, *mode_titles(self._modes))
         if self._choice.options != titles:

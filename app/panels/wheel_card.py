@@ -11,9 +11,10 @@ from app.format.load_unit import LoadUnit
 from app.format.markup import element, joined, style
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
+from app.panels.page_layout import PageLayout
 from model.analysis.ride import WheelState
 
-HEIGHT, GAP = 152, 14  # px; GAP from the view's upper edge
+HEIGHT, GAP = 152, 14  # px of usual type (page_layout.py); px from the view's upper edge
 ABSENT = "–"
 
 
@@ -24,7 +25,7 @@ class WheelCard:
         self._gui, self._actions = gui, actions
         self._panel: viser.PanelHandle | None = None
         self._text: Any = None
-        self._place = 0, 0
+        self._layout: PageLayout | None = None
         self.wheel: int | None = None
 
     def pick(self, wheel: int | None) -> int | None:
@@ -39,14 +40,16 @@ class WheelCard:
                 close = self._gui.add_button("Close", color="gray")
                 self._text = self._gui.add_html("")
             close.on_click(by_user(lambda event: self._actions.pick_wheel(None), self._actions.fail))
-            self.place(*self._place)
+            if self._layout is not None:
+                self.place(self._layout)
         return self.wheel
 
-    def place(self, x: int, width: int) -> None:
-        """Float along the upper edge of the view, px from its left edge."""
-        self._place = x, width
+    def place(self, layout: PageLayout) -> None:
+        """Float along the upper edge of the view."""
+        self._layout = layout
         if self._panel is not None:
-            self._panel.float(x=x, y=GAP, width=width, height=HEIGHT)
+            height = int(HEIGHT * layout.scale)
+            self._panel.float(x=layout.player_x, y=GAP, width=layout.player_width, height=height)
 
     def show(self, state: WheelState, colour: str, unit: LoadUnit) -> None:
         """Fill in the card; colour: the wheel's, CSS; unit: of forces."""

@@ -37,7 +37,7 @@ DRAG_TEXT_RATE = 3.0  # Hz: … and while runs follow each other: the page has t
 DRAG_PAUSE = 0.3  # s without a new run after which a drag is over
 REFUSAL_DELAY = 0.4  # s from a bad value to its refusal if no other request comes: a drag goes on meanwhile
 SEEN_WITHIN = 2.0  # s that a background job waits for something to be drawn; then it goes on without
-IDLE_RATE = 2.0  # Hz: a look at the page's size, while nothing moves …
+IDLE_RATE = 2.0  # Hz: while nothing moves …
 STAYS_AWAKE = 5.0  # s … since the user did something or a run came
 
 log = logging.getLogger("trackride")
@@ -228,6 +228,12 @@ class Session:
     def set_dark(self, dark: bool) -> None:
         self.post("dark", lambda: self._workspace.set_dark(dark))
 
+    def set_page_size(self, width: int, height: int, view: int) -> None:
+        self.post("size", lambda: self._window.set_page_size(width, height, view))
+
+    def enlarge_plots(self) -> None:
+        self.post("large", lambda: self._window.enlarge_plots())
+
     def recollect(self, visit: str) -> None:
         self.post("visit", lambda: self._transfers.recollect(visit))
 
@@ -411,7 +417,6 @@ class Session:
             if not self._rests:
                 self._window.show_time(playback, driving)
                 self._window.show_status(self._runner.under_way())
-            self._window.fit_page()
         self._workspace.tick(now)
         missing, news = self._workspace.missing_run, self._workspace.news(now)
         if missing is not None:

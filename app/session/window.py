@@ -19,10 +19,10 @@ from app.panels.configuration_windows import YamlWindow, show_faults
 from app.panels.controls import PRECISION
 from app.panels.files_panel import FilesPanel
 from app.panels.notifications import Notifications
-from app.panels.page_layout import LEFT, PageLayout, Screen
-from app.panels.page_setup import add_hints, add_page, apply_theme, store_visit, title_html
+from app.panels.page_layout import PageLayout, page_layout
+from app.panels.page_setup import add_hints, add_page, apply_theme, layout_html, store_visit, title_html
 from app.panels.parameter_panel import ParameterPanel
-from app.panels.playback_panel import PlaybackPanel
+from app.panels.playback_panel import PlaybackPanel, covered
 from app.panels.plot_panel import RUNS, PlotPanel
 from app.panels.runs_panel import RunsPanel
 from app.panels.shortcuts import add_shortcuts
@@ -63,7 +63,9 @@ class VehicleView(Protocol):
 
     def wheel_state(self, wheel: int) -> WheelState | None: ...
 
-    def write_loads(self) -> None: ...
+    def fit_page(self, height: int, covered: float, type_scale: float) -> None: ...
+
+    def write_names(self) -> None: ...
 
     @property
     def load_top(self) -> float | None: ...
@@ -106,14 +108,13 @@ class Window:
         self._road_due = 0.0  # monotonic s
         self._road_ahead = RoadAhead()
         self._notifications = Notifications(client)
-        self._screen = Screen(client.camera.image_width, client.camera.image_height)
-        layout = self._screen.first()
+        self._large = False  # the plots stand over the view
+        self._layout = layout = page_layout(client.camera.image_width, client.camera.image_height)  # until it is told
         gui = client.gui
         with client.atomic():
             apply_theme(gui, self._dark)
             gui.set_panel_label("Trackride")
             gui.main_panel.dock_left()
-            gui.main_panel.set_width(LEFT)
             self._signs = signs = add_page(gui)
             signs.in_view.on_update(by_user(lambda event: actions.set_in_view(event.target.value), actions.fail))
             signs.in_front.on_update(
@@ -124,16 +125,22 @@ class Window:
             signs.typed.on_update(
                 by_user(lambda event: self._controls.enter(*json.loads(event.target.value)[:2]), actions.fail)
             )
+            signs.size.on_update(
+                by_user(lambda event: actions.set_page_size(*json.loads(event.target.value)), actions.fail)
+            )
+            signs.at.on_update(
+                by_user(lambda event: actions.scrub(float(json.loads(event.target.value)[0])), actions.fail)
+            )
             self._controls = ParameterPanel(gui, presets, preset, config, actions)
             with self._controls.middle:
                 self._folders = [gui.add_folder(name, expand_by_default=False) for name in FOLDERS]
             self._plots_panel = gui.add_panel()
-            self._plots = PlotPanel(client, self._plots_panel, layout.page_height, self._dark, actions)
+            self._plots = PlotPanel(client, self._plots_panel, layout, self._dark, actions)
             self.runs = RunsPanel(gui, self._plots.runs_tab, actions)
             self._plots_panel.dock_right()
             self._playback = PlaybackPanel(gui, actions)
             self._card = WheelCard(gui, actions)
-            self._resize(layout)
+            self._arrange_panels(layout)
         self.view = make_view(client, self._dark)
         self.view.on_pick(actions.pick_wheel)
 
@@ -313,7 +320,7 @@ class Window:
         if self._drive is None or self._drive.stands:
             self._plots.point_at(playback.time)
         self._plots.settle()
-        self.view.write_loads()
+        self.view.write_names()
         self._show_wheel()
         self._show_road(playback.time)
         if self._filled and self._run is not None:
@@ -349,12 +356,17 @@ class Window:
         """Whether the tab of the runs is seen."""
         return RUNS in self._plots.in_front
 
-    def fit_page(self) -> None:
-        """Change the sizes of the panels when the size of the page has changed."""
-        camera = self._client.camera
-        layout = self._screen.update(camera.image_width, camera.image_height)
-        if layout is not None:
-            self._resize(layout)
+    def set_page_size(self, width: int, height: int, view: int) -> None:
+        """Share a page of this size among the panels; view: width of the 3-D view as it is, px."""
+        if (width, height) != (self._layout.width, self._layout.height):
+            self._arrange(page_layout(width, height, large=self._large))
+        elif self._layout.plots == "beside":  # the user has moved a seam: only what stands in the view follows
+            self._float(page_layout(width, height, view))
+
+    def enlarge_plots(self) -> None:
+        """Let the plots stand over the view, or put them back."""
+        self._large = not self._large
+        self._arrange(page_layout(self._layout.width, self._layout.height, large=self._large))
 
     def set_dark(self, dark: bool) -> None:
         self._dark = dark
@@ -428,11 +440,22 @@ class Window:
         """Say what is being made for a download; empty: nothing."""
         self._notifications.progress(doing)
 
-    def _resize(self, layout: PageLayout) -> None:
-        self._plots_panel.set_width(layout.right)
-        self._plots.set_page_height(layout.page_height)
-        self._playback.place(layout.player_x, layout.player_width)
-        self._card.place(layout.player_x, layout.player_width)
+    def _arrange(self, layout: PageLayout) -> None:
+        with self._client.atomic():
+            self._arrange_panels(layout)
+        self.view.fit_page(layout.height - layout.below, covered(layout), layout.scale)
+
+    def _arrange_panels(self, layout: PageLayout) -> None:
+        self._layout = layout
+        self._signs.layout.content = layout_html(layout)
+        self._client.gui.main_panel.set_width(layout.left)
+        self._plots_panel.set_width(layout.docked)
+        self._plots.arrange(layout)
+        self._float(layout)
+
+    def _float(self, layout: PageLayout) -> None:
+        self._playback.place(layout)
+        self._card.place(layout)
 
     def _plot(self, time: float) -> None:
         assert self._run is not None

@@ -45,8 +45,11 @@ AIMS: dict[Standpoint, _Aim] = {
 }
 
 
-def camera_pose(standpoint: Standpoint, measures: Measures, aspect: float) -> CameraPose:
-    """Where to stand so that the vehicle (for "wheel": its first wheels) fits a picture of this width by height."""
+def camera_pose(standpoint: Standpoint, measures: Measures, aspect: float, covered: float = 0.0) -> CameraPose:
+    """Where to stand so that the vehicle (for "wheel": its first wheels) fits a picture of this width by height.
+
+    covered: the share of its height, at its foot, that something else hides; the vehicle stands above that.
+    """
     aim, s = AIMS[standpoint], measures.scale
     bearing, elevation = np.radians([aim.bearing, aim.elevation])
     ahead, aside = np.cos(bearing), -np.sin(bearing)
@@ -63,9 +66,10 @@ def camera_pose(standpoint: Standpoint, measures: Measures, aspect: float) -> Ca
     centre = box.mean(axis=1)
     corners = np.array(list(product(*box))) - centre
     half_height = np.tan(FIELD_OF_VIEW / 2) / MARGIN
-    spread = np.maximum(np.abs(corners @ right) / aspect, np.abs(corners @ up))
+    spread = np.maximum(np.abs(corners @ right) / aspect, np.abs(corners @ up) / (1 - covered))
     distance = (corners @ towards + spread / half_height).max()
-    return CameraPose(centre + distance * towards, centre, FIELD_OF_VIEW)
+    look_at = centre - covered * distance * np.tan(FIELD_OF_VIEW / 2) * up
+    return CameraPose(look_at + distance * towards, look_at, FIELD_OF_VIEW)
 
 
 def about_as_long(one: Measures, other: Measures) -> bool:
@@ -111,7 +115,7 @@ class Camera:
         self._client = client
         self._at: tuple[Standpoint, Measures] | None = None
         self._pose: CameraPose | None = None
-        self._aspect = 0.0
+        self._aspect = self._covered = 0.0
         client.camera.max_orbit_distance = FARTHEST
         client.camera.on_update(self._refit)
 
@@ -119,7 +123,7 @@ class Camera:
         """Go to a standpoint."""
         self._at = standpoint, measures
         self._aspect = _aspect(self._camera)
-        self._pose = camera_pose(standpoint, measures, self._aspect)
+        self._pose = camera_pose(standpoint, measures, self._aspect, self._covered)
         with self._client.atomic():
             self._camera.fov = self._pose.fov
             self._camera.up_direction = (0.0, 0.0, 1.0)
@@ -131,11 +135,29 @@ class Camera:
         if self._at is not None and not about_as_long(measures, self._at[1]):
             self.look(self._at[0], measures)
 
+    def clear(self, covered: float) -> None:
+        """Keep the vehicle above the foot of the picture, of which this share of its height is hidden."""
+        stands, self._covered = covered == self._covered, covered
+        if not stands:
+            self._go_again()
+
+    def spacing(self, metres: float, height: float) -> float:
+        """How far apart points on the vehicle's axis are in a picture of this height, in the unit of the height."""
+        ahead = np.asarray(self._camera.look_at, dtype=float) - self._camera.position
+        distance = max(float(np.linalg.norm(ahead)), 1e-6)
+        across = np.sqrt(max(1 - (ahead[0] / distance) ** 2, 0.0))
+        return metres * across * height / (2 * distance * np.tan(max(self._camera.fov, 1e-3) / 2))
+
     async def _refit(self, camera: BrowserCamera) -> None:
-        """Go there again when the picture's shape has changed, unless the user has moved the camera."""
-        if self._at is None or self._pose is None or abs(_aspect(camera) / self._aspect - 1) < 0.01:
+        """Go there again when the picture's shape has changed."""
+        if abs(_aspect(camera) / max(self._aspect, 1e-6) - 1) >= 0.01:
+            self._go_again()
+
+    def _go_again(self) -> None:
+        """Go to the standpoint again, unless the user has moved the camera."""
+        if self._at is None or self._pose is None:
             return
-        moved = np.linalg.norm(camera.position - self._pose.position)
+        moved = np.linalg.norm(self._camera.position - self._pose.position)
         if moved < 0.01 * np.linalg.norm(self._pose.position):
             self.look(*self._at)
 

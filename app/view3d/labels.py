@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import viser
@@ -15,6 +15,7 @@ BELOW = 0.12  # m from the lowest point of the road down to the names of the roa
 NAMES = 0.0, 0.2  # m from there down to the middle of each row of names, at the size of the paper's vehicle
 WITH_LOADS = 0.12, 0.67  # the same of names with loads, which take two lines
 UNIT_AHEAD = 0.45  # m from the first wheel to the loads' unit
+ROOM, ROOM_WITH_LOADS = 22.0, 34.0  # px of usual type that a name takes along the vehicle
 FIGURE_SPACE = "\u2007"  # as wide as a figure
 
 
@@ -34,6 +35,9 @@ class WheelLabels:
         ahead = (measures.front + UNIT_AHEAD * self._scale, self._y, -WITH_LOADS[0] * self._scale)
         self._unit = api.add_label(f"{name}/unit", "", position=ahead, anchor="center-center", visible=False)
         self._with_loads = False
+        self._type = 1.0  # times its usual size
+        self._every = 1  # which names are shown: of each family every so many, from the front
+        self._spacing = min(np.diff(np.sort(xs)).min() for _, xs in families if len(xs) > 1)  # m, of one family
         self._arrange()
 
     def show(self, on: Mapping[str, bool]) -> None:
@@ -49,6 +53,22 @@ class WheelLabels:
             if self._unit.text != unit.name:
                 self._unit.text = unit.name
             self._say([f"{name}\n{load_text(own, unit)}" for name, own in zip(self._names, load, strict=True)])
+
+    def set_type(self, scale: float) -> None:
+        """Write so many times as large as usual."""
+        if scale != self._type:
+            self._type = scale
+            for label in (*self._labels, self._unit):
+                label.font_screen_scale = scale
+
+    def thin_out(self, pixels: Callable[[float], float]) -> None:
+        """Show as many names as have room; pixels: how far apart points are seen that are so many m apart, px."""
+        room = (ROOM_WITH_LOADS if self._with_loads else ROOM) * self._type
+        every = int(np.ceil(min(room / max(pixels(self._spacing), 1e-3), len(self._labels))))
+        if every != self._every:
+            self._every = every
+            for label, name in zip(self._labels, self._names, strict=True):
+                label.visible = (int(name[1:]) - 1) % every == 0
 
     def move(self, x: float, lowest: float) -> None:
         """Stand under the vehicle at x in the view, m, on a road with this lowest point."""

@@ -45,6 +45,7 @@ class View3D:
         self._nodes: _Nodes | None = None
         self._ghost: Ghost | None = None
         self._picked: Callable[[int], None] = lambda wheel: None
+        self._height, self._type = 900, 1.0  # px of the picture, and type by its usual size
         self._time = 0.0
         self._live = False  # a drive is shown, which has no time in common with a ghost
         self._origin = 0.0  # of the view along the road, m
@@ -146,10 +147,24 @@ class View3D:
         """Show sky and ground, or hide them."""
         self._surroundings.show(on)
 
-    def write_loads(self) -> None:
-        """Bring the loads at the wheels' names up to date: seldom enough to be read."""
-        if self._scene is not None and self._nodes is not None and self._on["loads"]:
-            self._nodes.labels.write(self._scene.loads(self._time), load_unit(self._scene.system))
+    def fit_page(self, height: int, covered: float, type_scale: float) -> None:
+        """The picture is `height` px high, of which panels hide the share `covered` at its foot.
+
+        type_scale: how many times as large as usual names are written.
+        """
+        self._height, self._type = height, type_scale
+        self._camera.clear(covered)
+        if self._nodes is not None:
+            self._nodes.labels.set_type(type_scale)
+
+    def write_names(self) -> None:
+        """Bring the wheels' names and the loads at them up to date: seldom enough to be read."""
+        if self._scene is None or self._nodes is None:
+            return
+        labels = self._nodes.labels
+        labels.thin_out(lambda metres: self._camera.spacing(metres, self._height))
+        if self._on["loads"]:
+            labels.write(self._scene.loads(self._time), load_unit(self._scene.system))
 
     def wheel_state(self, wheel: int) -> WheelState | None:
         """A wheel, in the model's order, at the time drawn last; None where there is no such wheel."""
@@ -182,7 +197,7 @@ class View3D:
             self._nodes.vehicle.show(self._on)
             self._nodes.labels.show(self._on)
             self._nodes.overlays.show(self._on)
-            self.write_loads()
+            self.write_names()
 
     def _colour_nodes(self) -> None:
         if self._scene is not None and self._nodes is not None:
@@ -222,5 +237,6 @@ class View3D:
             Overlays(api, scene, now),
         )
         self._nodes.vehicle.on_click(lambda wheel: self._picked(wheel))
+        self._nodes.labels.set_type(self._type)
         self._colour_nodes()
         self._show_what_is_on()

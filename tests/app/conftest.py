@@ -125,7 +125,10 @@ class FakeView:
     def wheel_state(self, wheel: int) -> WheelState | None:
         return wheel_state(self.runs[-1], wheel, self.times[-1])
 
-    def write_loads(self) -> None:
+    def fit_page(self, height: int, covered: float, type_scale: float) -> None:
+        self.fitted = height, covered, type_scale
+
+    def write_names(self) -> None:
         pass
 
     load_top = None

@@ -1,110 +1,88 @@
-"""Sizes of the panels, read off the size of the 3-D view."""
+"""How the panels share pages of all sizes."""
 
 from __future__ import annotations
+
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from app.panels import playback_panel, wheel_card
-from app.panels.page_layout import (
-    AXIS_NAME,
-    CARD,
-    HIGHEST,
-    LEFT,
-    LOWEST,
-    MODES,
-    NARROW,
-    PLOTS_HEAD,
-    RIGHT,
-    SEAMS,
-    WIDEST,
-    Screen,
-    chart_height,
-    spectrum_height,
-)
+from app.panels.page_layout import AXIS_NAME, CARD, HIGHEST, LOWEST, MODES, PLOTS_HEAD, SEAMS, page_layout
+from app.panels.playback_panel import covered, player_height
 from app.view3d.camera import CameraPose, Standpoint, camera_pose
 from app.view3d.meshes.hull import hull_edges
 from app.view3d.meshes.measures import measures_of
 from model import load_config
 from model.dynamics.vehicle import build_system
 
-
-@pytest.mark.parametrize("scale", [0.5, 1.0, 1.25, 1.5, 2.0])
-@pytest.mark.parametrize(("width", "height"), [(1280, 720), (1600, 900), (2560, 1440)])
-def test_the_page_is_found_behind_the_view(width: int, height: int, scale: float) -> None:
-    screen = Screen(int(width * scale), int(height * scale))
-    assert screen.update(int(width * scale), int(height * scale)) is None
-    docked = width - LEFT - RIGHT - SEAMS
-    layout = screen.update(int(docked * scale), int(height * scale))
-    assert layout is not None
-    assert layout.page_height == pytest.approx(height, abs=2)
-    assert RIGHT <= layout.right <= WIDEST
-    view = width - LEFT - layout.right - SEAMS
-    assert layout.player_width <= view
-    middle = layout.player_x + layout.player_width / 2
-    assert middle == pytest.approx(view / 2, abs=3)
+WIDE = [(1280, 720), (1600, 900), (1920, 1080), (2560, 1440), (3440, 1440)]
+NARROW = [(1024, 768), (768, 1024)]
 
 
-def test_a_window_made_larger_or_smaller_shares_its_width_anew() -> None:
-    screen = Screen(1280, 720)
-    opened = screen.update(1280 - LEFT - RIGHT - SEAMS, 720)
-    maximised = screen.update(2560 - LEFT - RIGHT - SEAMS, 1440)
-    assert opened is not None
-    assert maximised is not None
-    assert (opened.right, maximised.right) == (RIGHT, WIDEST)
-    assert maximised.player_x + maximised.player_width / 2 == pytest.approx((2560 - LEFT - WIDEST - SEAMS) / 2, abs=3)
-    again = screen.update(1280 - LEFT - WIDEST - SEAMS, 720)
-    assert again == opened
+@pytest.mark.parametrize(("width", "height"), [*WIDE, *NARROW])
+def test_the_view_is_wider_and_higher_than_a_third_of_the_page_and_the_player_in_its_middle(
+    width: int, height: int
+) -> None:
+    sizes = page_layout(width, height)
+    view = width - sizes.left - SEAMS - (sizes.right if sizes.plots == "beside" else 0)
+    assert view > width / 3
+    assert sizes.player_width <= view
+    assert sizes.player_x + sizes.player_width / 2 == pytest.approx(view / 2, abs=2)
+    assert sizes.plots == ("beside" if (width, height) in WIDE else "under")
 
 
-def test_in_a_narrow_window_the_plots_leave_room_for_the_player() -> None:
-    screen = Screen(1024, 768)
-    layout = screen.update(1024 - LEFT - RIGHT - SEAMS, 768)
-    assert layout is not None
-    assert NARROW <= layout.right < RIGHT
-    assert layout.player_x + layout.player_width < 1024 - LEFT - layout.right - SEAMS
+@pytest.mark.parametrize(("width", "height"), NARROW)
+def test_on_a_narrow_page_the_view_is_wider_and_higher_than_half_of_it(width: int, height: int) -> None:
+    sizes = page_layout(width, height)
+    assert width - sizes.left - SEAMS > width / 2
+    assert height - sizes.below > height / 2
+    assert sizes.plots_height == sizes.below
+    assert sizes.right == width - sizes.left
 
 
-def test_a_seam_that_is_moved_stays_where_it_is() -> None:
-    screen = Screen(1600, 900)
-    opened = screen.update(1600 - LEFT - RIGHT - SEAMS, 900)
-    moved = screen.update(1600 - LEFT - RIGHT - SEAMS - 200, 900)
-    assert opened is not None
-    assert moved is not None
-    assert moved.right == opened.right
+def test_a_larger_page_has_larger_type_and_wider_panels() -> None:
+    sizes = [page_layout(width, height) for width, height in ((1600, 900), (1920, 1080), (2560, 1440))]
+    assert sizes[0].scale == 1.0
+    for small, large in pairwise(sizes):
+        assert large.scale > small.scale
+        assert large.left > small.left
+        assert large.right > small.right
+        assert large.chart_height(3) > small.chart_height(3)
+    assert page_layout(1280, 720).scale == 1.0
 
 
-def test_half_docked_panels_tell_nothing() -> None:
-    screen = Screen(1280, 720)
-    assert screen.update(1280 - LEFT, 720) is None
+def test_a_seam_that_is_moved_moves_only_the_player() -> None:
+    sizes, moved = page_layout(1600, 900), page_layout(1600, 900, 500)
+    assert moved.player_x + moved.player_width / 2 == pytest.approx(250, abs=1)
+    assert (moved.left, moved.right, moved.plots_height) == (sizes.left, sizes.right, sizes.plots_height)
 
 
-def test_a_taller_page_makes_taller_charts_but_coarser_drawing_does_not() -> None:
-    screen = Screen(1600, 900)
-    view = 1600 - LEFT - RIGHT - SEAMS
-    assert screen.update(view, 900) is not None
-    assert screen.update(int(view * 0.75), 675) is None  # viser draws with fewer pixels
-    taller = screen.update(int(view * 0.75), 900)
-    assert taller is not None
-    assert taller.page_height == pytest.approx(1200, abs=3)
-    assert chart_height(1200, 3) > chart_height(900, 3)
+def test_large_plots_leave_room_for_the_player_and_stand_side_by_side() -> None:
+    for width, height in WIDE:
+        sizes = page_layout(width, height, large=True)
+        assert sizes.columns >= 2
+        assert sizes.plots_height + player_height(sizes) + playback_panel.GAP < height
+        assert sizes.chart_height(3) > page_layout(width, height).chart_height(3) or sizes.columns > 2
 
 
-@pytest.mark.parametrize(("height", "plots"), [(720, 3), (720, 4), (900, 4), (1000, 2), (1440, 4)])
+@pytest.mark.parametrize(("height", "plots"), [(720, 3), (720, 4), (900, 4), (900, 2)])
 def test_charts_fill_the_page_below_each_other(height: int, plots: int) -> None:
-    taken = PLOTS_HEAD + AXIS_NAME + plots * (chart_height(height, plots) + CARD)
-    assert 0 <= height - taken < plots or chart_height(height, plots) == HIGHEST
+    sizes = page_layout(1280, height)
+    taken = PLOTS_HEAD + AXIS_NAME + plots * (sizes.chart_height(plots) + CARD)
+    assert 0 <= height - taken < plots
 
 
 def test_charts_stay_usable_on_any_page() -> None:
-    assert chart_height(300, 3) == LOWEST
-    assert chart_height(5000, 2) == HIGHEST
+    assert page_layout(1280, 300).chart_height(3) == LOWEST
+    assert page_layout(1280, 5000).chart_height(2) == HIGHEST
 
 
 def test_the_spectrum_takes_what_the_modes_leave_of_a_tall_page_and_half_of_a_low_one() -> None:
-    assert spectrum_height(720) == chart_height(720, 2)
-    assert spectrum_height(1200) == 1200 - MODES - PLOTS_HEAD - AXIS_NAME - CARD > chart_height(1200, 2)
-    assert spectrum_height(5000) == HIGHEST
+    low, tall = page_layout(1280, 720), page_layout(1280, 1250)
+    assert low.spectrum_height() == low.chart_height(2)
+    assert tall.spectrum_height() == 1250 - MODES - PLOTS_HEAD - AXIS_NAME - CARD > tall.chart_height(2)
+    assert page_layout(1280, 5000).spectrum_height() == HIGHEST
 
 
 def heights_in_picture(points: np.ndarray, stood: CameraPose, height: int) -> np.ndarray:
@@ -118,14 +96,17 @@ def heights_in_picture(points: np.ndarray, stood: CameraPose, height: int) -> np
 
 
 @pytest.mark.parametrize("standpoint", ["side", "three-quarter", "front"])
-@pytest.mark.parametrize(("width", "height"), [(1280, 720), (1600, 900), (1920, 1080), (2560, 1440), (3440, 1440)])
-def test_neither_card_nor_player_hides_the_vehicle(width: int, height: int, standpoint: Standpoint) -> None:
-    screen, docked = Screen(width, height), width - LEFT - RIGHT - SEAMS
-    sizes = screen.update(docked, height)
-    assert sizes is not None
+@pytest.mark.parametrize(("width", "height"), [*WIDE, *NARROW])
+def test_the_player_does_not_hide_the_vehicle_nor_does_the_card_where_there_is_room(
+    width: int, height: int, standpoint: Standpoint
+) -> None:
+    sizes = page_layout(width, height)
+    view_height = height - sizes.below
+    view = width - sizes.left - SEAMS - (sizes.right if sizes.plots == "beside" else 0)
     measures = measures_of(build_system(load_config("paper")), "turret")
-    stood = camera_pose(standpoint, measures, (width - LEFT - sizes.right - SEAMS) / height)
-    upper = heights_in_picture(np.concatenate(hull_edges(measures)), stood, height)
-    assert upper.min() > wheel_card.GAP + wheel_card.HEIGHT
+    stood = camera_pose(standpoint, measures, view / view_height, covered(sizes))
+    upper = heights_in_picture(np.concatenate(hull_edges(measures)), stood, view_height).min()
+    assert upper > (wheel_card.GAP + wheel_card.HEIGHT * sizes.scale if sizes.plots == "beside" else 0)
     feet = np.array([(x, y, 0.0) for x in (measures.rear, measures.front) for y in (-measures.arrow, measures.arrow)])
-    assert heights_in_picture(feet, stood, height).max() < height - playback_panel.GAP - playback_panel.HEIGHT
+    player = view_height - playback_panel.GAP - player_height(sizes)
+    assert heights_in_picture(feet, stood, view_height).max() < player

@@ -189,16 +189,16 @@ def test_loads_at_the_names_are_those_of_the_time_and_sent_only_when_they_read_o
     view = View3D(tab)  # type: ignore[arg-type]
     view.show(paper)
     view.draw(0.5)
-    view.write_loads()
+    view.write_names()
     assert not texts()
     view.set_switch("loads", True)
     said, load = texts(), paper.normal_load[round(0.5 * paper.config.simulation.output_rate)]
     assert said["R1"].split() == ["R1", f"{load[0] / 1e3:.1f}"]
     assert said["I5"].split() == ["I5", f"{load[-1] / 1e3:.1f}"]
-    view.write_loads()
+    view.write_names()
     assert not texts()
     view.draw(0.0)
-    view.write_loads()
+    view.write_names()
     assert texts()
     view.set_switch("names", False)
     assert tab.scene._handle_from_node_name["/vehicle/labels"].visible

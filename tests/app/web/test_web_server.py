@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import gzip
 from typing import Any
+from urllib.parse import quote
+from urllib.request import Request, urlopen
 
 import pytest
 import websockets.asyncio.server
@@ -55,3 +58,16 @@ def test_tabs_wait_for_such_events(explore: Any, open_tab: Any) -> None:
     wait_for(lambda: tab.shows_run(1))
     states = explorer.server._websock_server._client_state_from_id.values()
     assert {type(state.message_buffer.message_event) for state in states} == {_AnyThreadEvent}
+
+
+@pytest.mark.parametrize("packed", [False, True])
+def test_the_page_has_our_title_and_icon_and_hides_visers_panel_until_ours_stands(explore: Any, packed: bool) -> None:
+    asked = Request(explore().address, headers={"Accept-Encoding": "gzip" if packed else "identity"})
+    with urlopen(asked) as answer:
+        body = answer.read()
+        assert answer.headers["Content-Encoding"] == ("gzip" if packed else "identity")
+    head = (gzip.decompress(body) if packed else body).decode().partition("<script")[0]
+    assert head.count("<title>") == head.count('rel="icon"') == 1
+    assert "<title>Trackride</title>" in head
+    assert quote("#1c6cb2") in head
+    assert "html:not([data-trackride-stands]) #root { visibility: hidden" in head
