@@ -20,7 +20,7 @@ NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.ASCII | re.IGNOREC
 
 
 def shown_label(parameter: Parameter) -> str:
-    """Name and unit: "Road stiffness, kN/m", the unit in one piece."""
+    """Name and unit: "Suspension stiffness, kN/m", the unit in one piece."""
     unit = parameter.shown_unit.replace(" ", "\u00a0")
     return f"{parameter.label}, {unit}" if unit else parameter.label
 

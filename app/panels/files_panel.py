@@ -54,7 +54,7 @@ class FilesPanel:
         with into:
             name: Any = gui.add_text("Preset name", "", hint="A name for the present parameters")
             present = gui.add_button_group(
-                "As they are",
+                "Present values",
                 (SAVE, EDIT),
                 hint="The present parameters. Save preset: into the list of presets, under the name above; this "
                 "browser remembers it. Edit YAML: all of them as text, to copy, change or paste.",

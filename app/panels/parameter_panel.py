@@ -44,7 +44,7 @@ class ParameterPanel:
             if parameter.what_if:
                 self._controls[parameter.key] = Control(gui, parameter, _value(config, parameter), actions)
         steps = gui.add_button_group(
-            "Parameters",
+            "Changes",
             ("Undo", "Redo", "Reset"),
             hint="Undo the last change (Ctrl+Z), redo it (Ctrl+Shift+Z), or all parameters as in the preset (R)",
         )

@@ -170,7 +170,7 @@ def _texts(row: Row) -> tuple[str, str, str]:
 
 
 def _named(parameter: Parameter) -> str:
-    """Its label and its symbol as a formula: "Road damping  $c_{s}$"."""
+    """Its label and its symbol as a formula: "Suspension damping  $c_{s}$"."""
     symbol, _, index = parameter.symbol.partition("_")
     formula = f"  ${symbol}_{{{index}}}$" if index else f"  ${symbol}$" if symbol else ""
     return parameter.label + formula

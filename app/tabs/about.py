@@ -70,7 +70,7 @@ LAWS: tuple[Law, ...] = (
         "with an error control.",
     ),
     Law(
-        "Drive",
+        "Speed control",
         "section 2.2",
         ("e = v_ref − ẋ_hull", "F = K_p e + K_i ∫e dt, |F| ≤ F_max"),
         "Cruise: the torque r F goes to the wheels in proportion to their loads. Prescribed: the hull is pulled along "

@@ -109,7 +109,7 @@ def number_text(value: float) -> str:
 
 PAPER_TABLE, PAPER_TEXT, ASSUMED, OURS = "Table 1", "section 5", "assumed", "this project"
 SUSPENSION, TRACK, VEHICLE, CONTACT = "Suspension", "Track", "Vehicle", "Ground contact"
-ROAD, DRIVE, SOLVER, NOTES = "Road", "Drive", "Solver", "Notes"
+ROAD, DRIVE, SOLVER, NOTES = "Road", "Speed control", "Solver", "Notes"
 GROUPS = (SUSPENSION, TRACK, VEHICLE, CONTACT, ROAD, DRIVE, SOLVER, NOTES)
 
 INTEGRATORS = (
@@ -206,16 +206,17 @@ PARAMETERS: tuple[Parameter, ...] = (
         group=SUSPENSION, source=ASSUMED, optional=True,
         description="Moment of inertia of one road arm about its centre of mass; left out: a uniform bar, m L²/12.",
         growth="Hardly anything changes: the arm is light beside its wheel."),
-    Parameter("vehicle.road_suspension.basis", "Road rates", "", "", "wheel",
+    Parameter("vehicle.road_suspension.basis", "Suspension rates", "", "", "wheel",
         group=SUSPENSION, source=OURS, kind="choice", choices=("wheel", "torsion"),
         description="wheel: stiffness and damping as felt at the wheel (N/m, N s/m), as Table 1 prints them; "
         "torsion: of the torsion bar itself (N m/rad, N m s/rad)."),
-    Parameter("vehicle.road_suspension.stiffness", "Road stiffness", "k_s", "N/m", 75530.0, 10, 1e8, 5000, 300000, 500,
+    Parameter("vehicle.road_suspension.stiffness", "Suspension stiffness", "k_s", "N/m", 75530.0,
+        10, 1e8, 5000, 300000, 500,
         group=SUSPENSION, source=PAPER_TABLE, shown=KILO_N_PER_M, per_wheel=True, what_if=True,
         description="Stiffness of the torsion bar that holds each road arm, at the wheel.",
         growth="Wheel loads swing further, and bounce and pitch get faster, so that the hull is shaken more or "
         "less, depending on the waves."),
-    Parameter("vehicle.road_suspension.damping", "Road damping", "c_s", "N s/m", 4732.0, 0, 1e7, 0, 30000, 100,
+    Parameter("vehicle.road_suspension.damping", "Suspension damping", "c_s", "N s/m", 4732.0, 0, 1e7, 0, 30000, 100,
         group=SUSPENSION, source=PAPER_TABLE, shown=KILO_N_S_PER_M, per_wheel=True,
         description="Damping between hull and each road arm, at the wheel.",
         growth="Bounce and pitch die away sooner, but sharp obstacles hit the hull harder."),
@@ -315,7 +316,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         description="Largest traction as a share of the normal load.",
         growth="Wheels can pull and brake harder before they slip; beyond what the road asks for, nothing changes."),
 
-    Parameter("drive.mode", "Drive mode", "", "", "cruise",
+    Parameter("drive.mode", "Speed kept by", "", "", "cruise",
         group=DRIVE, source=PAPER_TEXT, kind="choice", choices=("cruise", "prescribed"),
         description="cruise: a controller drives the wheels, each in proportion to its load; prescribed: the hull "
         "is pulled along at constant speed by a force at its centre of mass, not through the wheels, and so pitches "
@@ -333,7 +334,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         group=DRIVE, source=ASSUMED,
         description="How fast the drive force grows while the vehicle stays too slow (cruise).",
         growth="A lasting lack of speed is made up sooner; too much makes speed and drive force swing further."),
-    Parameter("drive.force_limit", "Drive limit", "F_max", "N", 40000.0, 0, 1e7, 0, 100000, 1000,
+    Parameter("drive.force_limit", "Force limit", "F_max", "N", 40000.0, 0, 1e7, 0, 100000, 1000,
         group=DRIVE, source=ASSUMED, shown=("kN", 1e-3),
         description="Largest drive or braking force (cruise).",
         growth="Steeper roads can be climbed without losing speed."),

@@ -63,7 +63,7 @@ def main() -> None:
         page.get_by_role("tab", name="Runs").click()
         page.get_by_text("Suspension", exact=True).click()
         before = explorer.run_number()
-        explorer.control("Road damping").fill("2.366")
+        explorer.control("Suspension damping").fill("2.366")
         explorer.wait_for_run(after=before)
         take(explorer, "comparison")
 

@@ -107,7 +107,7 @@ def test_keys_work_outside_of_text_boxes_only(at_rest: Explorer) -> None:
     page.on("download", lambda download: downloads.append(download))
     at_rest.press("Time, s", "End")
     at_rest.wait_for_value("Time, s", "now > 9")
-    box = at_rest.box("Road stiffness")
+    box = at_rest.box("Suspension stiffness")
     box.click()
     for key in (" ", "s", "b", "d", "f", "r"):
         page.keyboard.press(key)

@@ -14,9 +14,9 @@ from tests.browser.driver import DOWNLOAD, NEW_CURVES, SOON, Explorer
 
 
 def test_a_slider_moved_by_key_makes_a_new_run_whose_loads_stand_in_the_plot(at_rest: Explorer) -> None:
-    before, curves, value = at_rest.run_number(), at_rest.curves(), at_rest.value("Road stiffness")
-    at_rest.press("Road stiffness", "ArrowRight")
-    at_rest.wait_for_value("Road stiffness", "now > value", value)
+    before, curves, value = at_rest.run_number(), at_rest.curves(), at_rest.value("Suspension stiffness")
+    at_rest.press("Suspension stiffness", "ArrowRight")
+    at_rest.wait_for_value("Suspension stiffness", "now > value", value)
     at_rest.wait_for_run(after=before)
     at_rest.page.wait_for_function(NEW_CURVES, arg=curves, timeout=SOON)
 

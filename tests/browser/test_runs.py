@@ -48,7 +48,7 @@ def test_from_a_pinned_vehicle_to_a_figure_that_proves_it(at_rest: Explorer) -> 
     expect(page.locator(".trackride-compared")).to_contain_text("Baseline ● Paper vehicle")
     at_rest.fold("Suspension")
     before = at_rest.run_number()
-    at_rest.control("Road damping").fill("2.366")
+    at_rest.control("Suspension damping").fill("2.366")
     at_rest.wait_for_run(after=before)
 
     paper = load_config("paper")
@@ -64,7 +64,7 @@ def test_from_a_pinned_vehicle_to_a_figure_that_proves_it(at_rest: Explorer) -> 
         texts = (*row_texts(row), change_text(row.change))
         expect(line).to_contain_text("".join(texts))
 
-    kept = page.get_by_text("Road damping 4.732 → 2.366 kN s/m")
+    kept = page.get_by_text("Suspension damping 4.732 → 2.366 kN s/m")
     expect(kept.last).to_be_visible()
     at_rest.fold("Suspension")
     at_rest.fold("Export")
@@ -164,7 +164,9 @@ def test_preset_parameters_runs_and_baseline_come_back_with_a_reload(at_rest: Ex
     page.get_by_role("tab", name="Runs").click()
     expect(heading).to_contain_text("Baseline ● Amplitude 100 → 300 mm")
     expect(page.locator(".trackride-figures:visible").first).to_contain_text(re.compile(r"rms, m/s².*%"))
-    row = page.locator("div:has(> div > p > label)").filter(has_text=re.compile("^Road damping 4.732 → 2.366 kN s/m"))
+    row = page.locator("div:has(> div > p > label)").filter(
+        has_text=re.compile("^Suspension damping 4.732 → 2.366 kN s/m")
+    )
     row.get_by_role("button", name="Show").first.click()
     expect(at_rest.control("Preset")).to_have_value("Paper vehicle")
 

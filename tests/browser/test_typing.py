@@ -73,13 +73,13 @@ def test_what_is_no_number_is_refused_and_not_misread(at_rest: Explorer) -> None
 
 def test_values_per_wheel_are_typed_and_shown(at_rest: Explorer) -> None:
     at_rest.fold("Suspension")
-    label, stiffness = "Road damping", "Road stiffness"
+    label, stiffness = "Suspension damping", "Suspension stiffness"
     before = at_rest.run_number()
     type_into(at_rest, label, "5, 0, 0, 0, 0, 5")
     assert at_rest.wait_for_run(after=before) == before + 1
     expect(box(at_rest, label)).to_have_value("5, 0, 0, 0, 0, 5")
     type_into(at_rest, label, "4, 1")
-    expect(at_rest.page.get_by_text("Road damping: ")).to_be_visible()
+    expect(at_rest.page.get_by_text("Suspension damping: ")).to_be_visible()
     expect(box(at_rest, label)).to_have_value("5, 0, 0, 0, 0, 5")
     at_rest.close_messages()
     before = at_rest.run_number()

@@ -19,11 +19,11 @@ def test_names_tell_preset_changes_and_content() -> None:
     }
     name = file_name(PAPER, "Paper vehicle", changes, "1280x720", ".png")
     assert name == (
-        "paper-vehicle_speed-22.5-km-h_amplitude-150-mm_road-stiffness-60-kn-m_road-type-half-round_1280x720.png"
+        "paper-vehicle_speed-22.5-km-h_amplitude-150-mm_suspension-stiffness-60-kn-m_road-type-half-round_1280x720.png"
     )
     torsion = {"vehicle.road_suspension.basis": "torsion", "vehicle.road_suspension.stiffness": 9000.0}
     name = file_name(PAPER.replace(torsion), "Paper vehicle", torsion, "", ".yaml")
-    assert name == "paper-vehicle_road-rates-torsion_road-stiffness-9-kn-m-rad.yaml"
+    assert name == "paper-vehicle_suspension-rates-torsion_suspension-stiffness-9-kn-m-rad.yaml"
 
 
 def test_names_are_safe_and_short() -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from app.format.parameters import allowed, file_number, file_value, hint, refusal, shown_label, shown_number, shown_text
 from model.config.config import ConfigError, load_config
-from model.config.parameters import NOTES, PARAMETER, PARAMETERS
+from model.config.parameters import GROUPS, NOTES, PARAMETER, PARAMETERS
 from tests.app.conftest import as_typed
 
 PAPER = load_config("paper")
@@ -55,7 +55,7 @@ def test_labels_fit_one_line_and_hints_explain() -> None:
             assert "left out" not in told
             assert parameter.symbol in hint(parameter)
             assert parameter.shown_unit in hint(parameter)
-    assert as_typed(shown_label(PARAMETER[STIFFNESS])) == "Road stiffness, kN/m"
+    assert as_typed(shown_label(PARAMETER[STIFFNESS])) == "Suspension stiffness, kN/m"
     assert "When it grows: " in hint(PARAMETER[STIFFNESS])
 
 
@@ -75,7 +75,10 @@ def test_a_refusal_has_the_unit_of_the_basis() -> None:
         ({"road.amplitude": 0.5, "road.wavelength": 0.3}, "Amplitude: must not be greater than the wavelength, 0.3 m."),
         ({"drive.speed_kmh": None}, "Speed: a value is needed. Give 0.5 to 100 km/h."),
         ({"simulation.duration": 600}, "Output rate: 600 s at 200 samples a second are more than the 100000 samples"),
-        ({STIFFNESS: (0.0, 5e3)}, "Road stiffness: 0, 5 kN/m is not allowed. Give 0.01 to 100000 kN/m, for each road"),
+        (
+            {STIFFNESS: (0.0, 5e3)},
+            "Suspension stiffness: 0, 5 kN/m is not allowed. Give 0.01 to 100000 kN/m, for each",
+        ),
         ({"vehicle.road_wheels.count": 2.5}, "Road wheels: 2.5 is not allowed; give a whole number from 2 to 20."),
     ],
 )
@@ -89,3 +92,10 @@ def test_refusals_name_label_range_and_unit(changes: dict[str, Any], expected: s
 def test_allowed_values_in_the_shown_unit() -> None:
     assert allowed(PARAMETER[STIFFNESS]) == "0.01 to 100000 kN/m"
     assert allowed(PARAMETER["road.type"]).startswith("one of flat, sine, half round")
+
+
+def test_no_parameter_is_called_like_another_a_folder_or_a_mode() -> None:
+    labels = [parameter.label for parameter in PARAMETERS]
+    assert len(set(labels)) == len(labels)
+    assert not {*labels, *GROUPS} & {"Run", "Drive"}
+    assert not set(labels) & set(GROUPS)

@@ -120,14 +120,14 @@ def test_rates_of_the_torsion_bar_are_shown_in_its_units(server: viser.ViserServ
     controls = panel(server)
     damping = "vehicle.road_suspension.damping"
     controls.show(PAPER.replace({"vehicle.road_suspension.basis": "torsion"}))
-    assert as_typed(controls[STIFFNESS]._one.label) == "Road stiffness, kN m/rad"
+    assert as_typed(controls[STIFFNESS]._one.label) == "Suspension stiffness, kN m/rad"
     assert "unit kN m/rad" in controls[STIFFNESS]._list.hint
     assert "at the wheel" not in controls[STIFFNESS]._one.hint
-    assert as_typed(controls[damping]._one.label) == "Road damping, kN m s/rad"
+    assert as_typed(controls[damping]._one.label) == "Suspension damping, kN m s/rad"
     assert as_typed(controls["vehicle.imaginary_suspension.stiffness"]._one.label) == "Imaginary stiffness, kN/m"
     controls.show(PAPER)
-    assert as_typed(controls[STIFFNESS]._one.label) == "Road stiffness, kN/m"
-    assert as_typed(controls[damping]._one.label) == "Road damping, kN s/m"
+    assert as_typed(controls[STIFFNESS]._one.label) == "Suspension stiffness, kN/m"
+    assert as_typed(controls[damping]._one.label) == "Suspension damping, kN s/m"
 
 
 def test_presets_with_the_same_title_can_be_told_apart(server: viser.ViserServer) -> None:

@@ -110,7 +110,7 @@ def test_what_was_changed_comes_first_and_everything_is_there(paper, soft):
     assert len(others) == 4
     assert all(value < height["2.366 kN s/m"] for value in others)
     assert "4.732 kN s/m" not in words(sheet)
-    assert sum(label.startswith("Road damping") for label in words(sheet)) == 1
+    assert sum(label.startswith("Suspension damping") for label in words(sheet)) == 1
 
 
 def test_without_a_baseline_changes_are_against_the_papers_vehicle(paper, soft):

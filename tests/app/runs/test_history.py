@@ -89,7 +89,7 @@ def test_a_run_is_named_after_its_changes_in_shown_units():
     assert named(faster(22)) == "Speed 15 → 22 km/h"
     assert named(faster(15)) == PAPER.name  # as it was
     both = Request(PAPER).changed("vehicle.road_suspension.damping", 2366.0).changed(AMPLITUDE, 0.15)
-    assert named(both) == "Road damping 4.732 → 2.366 kN s/m, Amplitude 100 → 150 mm"
+    assert named(both) == "Suspension damping 4.732 → 2.366 kN s/m, Amplitude 100 → 150 mm"
     many = both.changed(SPEED, 22).changed("contact.friction", 0.5)
     assert named(many).endswith(" and 2 more")
     assert named(Request(PAPER).changed("vehicle.imaginary_wheels.enabled", False)) == "Imaginary wheels on → off"
@@ -162,5 +162,5 @@ def test_what_was_kept_at_an_earlier_visit_is_kept_once_with_name_and_colour():
 def test_rates_of_torsion_bars_are_told_in_their_own_unit():
     stiffness = "vehicle.road_suspension.stiffness"
     bars = PAPER.replace({"vehicle.road_suspension.basis": "torsion", stiffness: 9000})
-    assert named(Request(bars).changed(stiffness, 8000)) == "Road stiffness 9 → 8 kN m/rad"
-    assert "Road stiffness 75.53 kN/m → 9 kN m/rad" in differences(PAPER, bars)
+    assert named(Request(bars).changed(stiffness, 8000)) == "Suspension stiffness 9 → 8 kN m/rad"
+    assert "Suspension stiffness 75.53 kN/m → 9 kN m/rad" in differences(PAPER, bars)

@@ -140,7 +140,7 @@ def test_a_preset_and_a_reset_move_all_controls_and_run_once(explore: Any, open_
     assert tab.widget("Obstacle height, mm")["value"] == 100
     tab.use("Obstacle height, mm", 150)
     wait_for(lambda: tab.shows_run(3))
-    tab.use("Parameters", "Reset")
+    tab.use("Changes", "Reset")
     wait_for(lambda: tab.shows_run(4))
     wait_for(lambda: tab.widget("Obstacle height, mm")["value"] == 100)
     tab.use("Obstacle height, mm", 160)

@@ -478,7 +478,7 @@ def test_an_uploaded_configuration_is_run_and_can_be_undone(tab: Tab) -> None:
     upload(tab, "Open a configuration", "tank.yaml", b"name: My tank\ndrive: {speed_kmh: 40}\n")
     wait_for(lambda: tab.widget("Speed, km/h")["value"] == 40)
     wait_for(lambda: tab.widget("Preset")["value"] == "My tank")
-    tab.use("Parameters", "Undo")
+    tab.use("Changes", "Undo")
     wait_for(lambda: tab.widget("Speed, km/h")["value"] == 22)
     wait_for(lambda: tab.widget("Preset")["value"] == "Paper vehicle", "the preset")
 
@@ -498,7 +498,7 @@ def test_faults_of_an_uploaded_configuration_are_all_shown_escaped_and_nothing_c
 
 
 def test_a_configuration_is_edited_as_text(tab: Tab) -> None:
-    tab.use("As they are", "Edit YAML")
+    tab.use("Present values", "Edit YAML")
     text = tab.widget("YAML")["value"]
     assert "<style>" in html(tab, "trackride-yaml")
     assert parse_config(text).drive.speed_kmh == 22
@@ -509,7 +509,7 @@ def test_a_configuration_is_edited_as_text(tab: Tab) -> None:
     tab.use("YAML", text.replace("speed_kmh: 22", "speed_kmh: 23"))
     tab.use("Use this", True)
     wait_for(lambda: tab.widget("Speed, km/h")["value"] == 23)
-    tab.use("Parameters", "Reset")
+    tab.use("Changes", "Reset")
     wait_for(lambda: tab.widget("Speed, km/h")["value"] == 15)  # it was a change of the preset
 
 

@@ -432,14 +432,14 @@ def test_buttons_and_keys_undo_and_redo(explore: Any, open_tab: Any) -> None:
     wait_for(lambda: tab.shows_run(2), "run 2")
     tab.use("Amplitude, mm", 200)
     wait_for(lambda: tab.shows_run(3), "run 3")
-    tab.use("Parameters", "Undo")
+    tab.use("Changes", "Undo")
     wait_for(lambda: tab.shows_run(4), "the run before")
     tab.press("Undo the last change")
     wait_for(lambda: tab.shows_run(5), "the first run again")
     tab.press("Redo the change")
     tab.press("Redo the change")  # both count, however quickly they come
     wait_for(lambda: tab.widget(SPEED)["value"] == 20 and tab.widget("Amplitude, mm")["value"] == 200, "the sliders")
-    tab.use("Parameters", "Redo")
+    tab.use("Changes", "Redo")
     wait_for(lambda: [n for n in tab.notifications if n["title"] == "Nothing to redo"])
 
 
