@@ -1,5 +1,6 @@
 // What the page itself does about the plots: marks (the time cursor, named frequencies), values at the cursor, zoom,
-// curves that are hidden with a click on their name, and telling which tabs are in front.
+// curves that are hidden with a click on their name, what the tools above the plots say of their shape, and telling which
+// tabs are in front.
 // viser lists its charts in __viserTestpoints.uplots; without that list there are no marks, but all curves.
 // uPlot shares cursor and zoom among charts with the same sync key that are in view; one that comes into view later is
 // given the zoom here, and so are the load maps.
@@ -83,10 +84,12 @@ if (!window.trackridePlots) {
   const isClear = (chart, k) => isRun(chart.series[k]) && /^#\w{6}$/.test(chart.series[k].stroke(chart, k));
   const thicken = (chart, k) => {
     const curve = chart.series[k], draw = curve.paths;
-    if (!isClear(chart, k)) return;
+    if (k === 0) return;
     curve.paths = (...all) => {
       const paths = draw(...all);
       if (!paths) return paths;
+      if (shapeOf(chart) !== 'curves') return {...paths, stroke: new Path2D()};  // `reshape` draws
+      if (!isClear(chart, k)) return paths;
       let {stroke} = paths;
       if (all[3] - all[2] < CROWD) {
         stroke = new Path2D();
@@ -95,6 +98,145 @@ if (!window.trackridePlots) {
       curve.drawn = stroke;
       return {...paths, stroke};
     };
+  };
+  // The tools above the plots: in which shape curves are drawn, and whether their names stand at their ends. By itself,
+  // curves that crowd (rough ground) become strips
+  const look = {shape: 'auto', names: false, ...JSON.parse(sessionStorage.getItem('trackride-plots') ?? '{}')};
+  const shownRuns = (chart) => chart.series.flatMap((curve, k) => isRun(curve) && curve.show ? [k] : []);
+  const shapeOf = (chart) => {
+    const [from, to] = chart.series[0].idxs ?? [0, 0];
+    if (chart.cursor.sync.key !== TIME || shownRuns(chart).length < 3) return 'curves';
+    return look.shape !== 'auto' ? look.shape : crowds(chart, from, to) ? 'strips' : 'curves';
+  };
+  // Curves crowd where they turn, by more than a thirtieth of all, more than once in 8 px
+  const judged = new WeakMap();  // chart -> for what it was looked at last, and the answer
+  const crowds = (chart, from, to) => {
+    const runs = shownRuns(chart), what = [chart.data[0], from, to, chart.width, runs.length], last = judged.get(chart);
+    if (last?.what.every((part, k) => part === what[k])) return last.answer;
+    const values = runs.map((k) => chart.data[k].slice(from, to + 1));
+    let low = Infinity, high = -Infinity, turns = 0;
+    values.forEach((curve) => curve.forEach((value) => { low = Math.min(low, value); high = Math.max(high, value); }));
+    values.forEach((curve) => {
+      let end = curve[0], up = 0;
+      curve.forEach((value) => {
+        if (up * (value - end) >= 0 && up) return end = value;
+        if (Math.abs(value - end) * 30 < high - low) return;
+        turns += up ? 1 : 0;
+        [up, end] = [Math.sign(value - end), value];
+      });
+    });
+    const answer = turns / runs.length > chart.bbox.width / devicePixelRatio / 8;
+    judged.set(chart, {what, answer});
+    return answer;
+  };
+  const stretch = (chart) => {  // numbers of the points in view, one more at both ends
+    const [from, to] = chart.series[0].idxs;
+    return Array.from({length: Math.min(to + 1, chart.data[0].length - 1) - Math.max(from - 1, 0) + 1}, (_, k) => Math.max(from - 1, 0) + k);
+  };
+  const lineOf = (chart, k, points, place) => {
+    const path = new Path2D();
+    let begun = false;
+    points.forEach((point) => {
+      const value = typeof k === 'function' ? k(point) : chart.data[k][point];
+      if (!Number.isFinite(value)) return begun = false;
+      const at = [chart.valToPos(chart.data[0][point], 'x', true), place(value)];
+      begun ? path.lineTo(...at) : path.moveTo(...at);
+      begun = true;
+    });
+    return path;
+  };
+  const inPlot = (chart, draw) => {
+    const {ctx, bbox: {left, top, width, height}} = chart;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(left, top, width, height);
+    ctx.clip();
+    ctx.setLineDash([]);
+    [ctx.lineWidth, ctx.lineJoin] = [1.25 * devicePixelRatio, 'round'];
+    draw(ctx);
+    ctx.restore();
+  };
+  const letters = (chart) => parseFloat(chart.axes[0].font[0] ?? chart.axes[0].font) || 11 * devicePixelRatio;  // canvas px
+  const write = (chart, text, x, y, colour, align) => {
+    const {ctx} = chart;
+    ctx.save();  // uPlot takes what it has set last for what is set
+    [ctx.font, ctx.textAlign, ctx.textBaseline] = [`600 ${letters(chart)}px system-ui, sans-serif`, align, 'middle'];
+    [ctx.strokeStyle, ctx.lineWidth, ctx.lineJoin] = [getComputedStyle(document.body).backgroundColor, 3 * devicePixelRatio, 'round'];
+    ctx.strokeText(text, x, y);
+    ctx.fillStyle = colour;
+    ctx.fillText(text, x, y);
+    ctx.restore();
+  };
+  const drawStrips = (chart) => {  // one below the other, all with the same scale, over what uPlot has drawn
+    const {ctx, bbox: {left, top, width, height}} = chart, runs = shownRuns(chart), points = stretch(chart);
+    const values = runs.flatMap((k) => points.map((point) => chart.data[k][point])).filter(Number.isFinite);
+    const low = Math.min(...values), high = Math.max(...values, low + 1e-9), each = height / runs.length;
+    const axis = chart.axes[1], px = devicePixelRatio, {stroke} = chart.axes[1].grid, labelled = (axis.labelSize ?? 0) * px;
+    ctx.clearRect(labelled, top - 8 * px, left + width - labelled + 2 * px, height + 8 * px);
+    ctx.clearRect(labelled, top + height, left - 5 * px - labelled, 7 * px);  // the lower half of the lowest number
+    ctx.save();
+    ctx.setLineDash([]);
+    [ctx.strokeStyle, ctx.lineWidth] = ['#80808040', px];
+    ctx.beginPath();
+    (chart.axes[0]._splits ?? []).forEach((time) => {
+      const x = chart.valToPos(time, 'x', true);
+      if (x >= left && x <= left + width) { ctx.moveTo(x, top); ctx.lineTo(x, top + height); }
+    });
+    runs.forEach((_, row) => { ctx.moveTo(left, top + (row + 1) * each); ctx.lineTo(left + width, top + (row + 1) * each); });
+    ctx.stroke();
+    runs.forEach((k, row) => {
+      const place = (value) => top + (row + 1) * each - (0.06 + 0.88 * (value - low) / (high - low)) * each;
+      const other = chart.series.findIndex((it) => it.class === 'baseline' && it.label === chart.series[k].label);
+      inPlot(chart, () => {
+        for (const curve of [other, k].filter((number) => number > 0)) {
+          ctx.setLineDash(curve === other ? [4 * px, 3 * px] : []);
+          ctx.strokeStyle = chart.series[curve].stroke(chart, curve);
+          ctx.stroke(lineOf(chart, curve, points, place));
+        }
+      });
+      write(chart, chart.series[k].label, left - 6 * px, top + (row + 0.5) * each, chart.series[k].stroke(chart, k), 'right');
+    });
+    const text = `each strip: ${+low.toPrecision(3)} … ${+high.toPrecision(3)} ${axis.label}`.replaceAll('-', '−');
+    write(chart, text, left + width - 2 * px, top - 2 * px, axis.stroke(chart, 1), 'right');
+    ctx.restore();
+  };
+  const drawBand = (chart) => {  // from the least to the largest of all wheels, and their mean
+    const {ctx} = chart, runs = shownRuns(chart), points = stretch(chart), place = (value) => chart.valToPos(value, 'y', true);
+    const all = (numbers) => (point) => numbers.map((k) => chart.data[k][point]);
+    const mean = (numbers) => (point) => all(numbers)(point).reduce((sum, value) => sum + value, 0) / numbers.length;
+    const colour = chart.series[runs[Math.floor(runs.length / 2)]].stroke(chart, runs[0]).slice(0, 7);
+    inPlot(chart, () => {
+      const band = new Path2D(), edge = (of, point) => [chart.valToPos(chart.data[0][point], 'x', true), place(of(...all(runs)(point)))];
+      points.forEach((point, k) => k ? band.lineTo(...edge(Math.max, point)) : band.moveTo(...edge(Math.max, point)));
+      [...points].reverse().forEach((point) => band.lineTo(...edge(Math.min, point)));
+      ctx.fillStyle = `${colour}40`;
+      ctx.fill(band);
+      ctx.strokeStyle = colour;
+      ctx.lineWidth *= 1.4;
+      ctx.stroke(lineOf(chart, mean(runs), points, place));
+      const others = chart.series.flatMap((curve, k) => curve.class === 'baseline' && curve.show ? [k] : []);
+      ctx.setLineDash([4 * devicePixelRatio, 3 * devicePixelRatio]);
+      ctx.globalAlpha = 0.7;
+      if (others.length) ctx.stroke(lineOf(chart, mean(others), points, place));
+    });
+    write(chart, `mean and range of ${runs.length} wheels`, chart.bbox.left + chart.bbox.width - 2 * devicePixelRatio,
+      chart.bbox.top + letters(chart), chart.axes[1].stroke(chart, 1), 'right');
+  };
+  const drawNames = (chart) => {  // at the curves' right ends, apart from each other
+    const {bbox: {left, top, width, height}} = chart, room = 1.1 * letters(chart), [, last] = chart.series[0].idxs ?? [];
+    const ends = shownRuns(chart).filter((k) => Number.isFinite(chart.data[k][last]))
+      .map((k) => ({k, y: chart.valToPos(chart.data[k][last], 'y', true)})).sort((a, b) => a.y - b.y);
+    ends.forEach((end, row) => end.y = Math.max(end.y, row ? ends[row - 1].y + room : top + room / 2));
+    ends.reduceRight((floor, end) => (end.y = Math.min(end.y, floor)) - room, top + height - room / 2);
+    ends.forEach(({k, y}) => write(chart, chart.series[k].label, left + width - 3 * devicePixelRatio, y, chart.series[k].stroke(chart, k).slice(0, 7), 'right'));
+  };
+  const reshape = (chart) => {
+    const shape = shapeOf(chart);
+    chart.root.dataset.shape = shape;
+    if (shape === 'strips') drawStrips(chart);
+    if (shape === 'band') drawBand(chart);
+    if (shape === 'curves' && look.names && shownRuns(chart).length > 1) drawNames(chart);
+    return shape;
   };
   // The curve of a wheel that is picked, or whose name is pointed at, is drawn once more over the others.
   const PALE = 0.2, picked = new WeakMap(), pointed = new WeakMap();  // chart -> number of its curve
@@ -157,7 +299,7 @@ if (!window.trackridePlots) {
       const most = clear.reduce((a, b) => Math.abs(b.value) > Math.abs(a.value) ? b : a), [x, y] = place(most);
       const {left, top, width, height} = chart.bbox, beyond = y + (most.value < 0 ? 10 : -10) * px;
       const text = `${most.value.toFixed(1)} ${chart.axes[1].label}`.replace('-', '−');
-      ctx.font = `${11 * px}px system-ui, sans-serif`;
+      ctx.font = `${letters(chart)}px system-ui, sans-serif`;
       [ctx.textAlign, ctx.textBaseline, ctx.lineJoin] = ['left', 'middle', 'round'];
       const at = [
         Math.min(x - 3 * px, left + width - ctx.measureText(text).width),
@@ -181,13 +323,21 @@ if (!window.trackridePlots) {
     around?.setAttribute('data-trackride', 'chart');
     around?.parentElement.setAttribute('data-trackride', 'charts');  // plots.css puts them side by side there
     chart.root.classList.add(chart.cursor.sync.key);
-    chart.root.querySelector('.u-title').title = 'Drag across the plot to zoom in, double-click to see all';
+    chart.root.querySelector('.u-title').title = 'Drag across the plot to zoom in (or Ctrl and the wheel), double-click to see all; click to go to a time';
     const legend = chart.root.querySelector('.u-legend');
     legend.title = 'Point at a name to see its curve in front, click it to hide the curve, with Ctrl all others';
     legend.querySelectorAll('.u-series').forEach((name, k) => {
       if (!isRun(chart.series[k])) return;
       name.addEventListener('mouseenter', () => pointAt(chart, k));
       name.addEventListener('mouseleave', () => pointAt(chart));
+      const heading = name.querySelector('th');
+      [heading.tabIndex, heading.ariaLabel] = [0, `${chart.series[k].label}: show or hide`];
+      heading.setAttribute('role', 'button');
+      heading.addEventListener('keydown', (event) => {
+        if (event.key !== 'Enter') return;
+        event.stopPropagation();
+        heading.click();
+      });
     });
     chart.series.forEach((_, k) => thicken(chart, k));
     notePicked(chart);
@@ -204,8 +354,9 @@ if (!window.trackridePlots) {
     (chart.hooks.draw ??= []).push(() => {
       const [first, last] = ends(chart), {min, max} = chart.scales.x, shared = groupOf(chart);
       const drawn = last > first && max > min && inView.has(chart);
-      drawInFront(chart);
-      drawPeaks(chart);
+      const shape = reshape(chart);
+      if (shape === 'curves') drawInFront(chart);
+      if (shape === 'curves') drawPeaks(chart);
       if (drawn) shared.zoom = [(min - first) / (last - first), (max - first) / (last - first)];
       point(chart);
       frame(chart);
@@ -214,7 +365,60 @@ if (!window.trackridePlots) {
       queueMicrotask(() => layOut(chart));
     });
     chart.over.addEventListener('mouseleave', () => setTimeout(window.trackridePlots, 0));
+    useMouse(chart);
   };
+  // Where the mouse is, in figures; a click moves the time there; the wheel zooms, in plots beside the view with Ctrl, so
+  // that the tab can be scrolled
+  let clicks = 0;
+  const useMouse = (chart) => {
+    const {over} = chart, timed = chart.cursor.sync.key === TIME, at = document.createElement('span');
+    at.className = 'trackride-at';
+    over.append(at);
+    (chart.hooks.setCursor ??= []).push(() => {
+      const {left} = chart.cursor;
+      at.hidden = !(left >= 0);
+      if (at.hidden) return;
+      at.textContent = `${chart.posToVal(left, 'x').toFixed(2)} ${timed ? 's' : 'Hz'}`;
+      at.style.left = `${Math.min(Math.max(left, 24), over.clientWidth - 24)}px`;
+    });
+    let pressed = null;
+    over.addEventListener('mousedown', (event) => pressed = event.clientX);
+    over.addEventListener('click', (event) => {
+      if (!timed || event.detail > 1 || Math.abs(event.clientX - (pressed ?? event.clientX)) > 3) return;
+      const time = chart.posToVal(event.clientX - over.getBoundingClientRect().left, 'x');
+      trackrideInTurn(() => trackrideTell('at', JSON.stringify([Math.max(time, 0), ++clicks])));
+    });
+    over.addEventListener('wheel', (event) => {
+      if (!event.ctrlKey && document.documentElement.dataset.plots !== 'large') return;
+      event.preventDefault();
+      const [first, last] = ends(chart), {min, max} = chart.scales.x, key = chart.cursor.sync.key;
+      const on = chart.posToVal(event.clientX - over.getBoundingClientRect().left, 'x'), by = event.deltaY > 0 ? 1.25 : 0.8;
+      const span = Math.min(Math.max(by * (max - min), (last - first) / 500), last - first);
+      const low = Math.min(Math.max(on - (on - min) / (max - min) * span, first), last - span);
+      zoomAll([(low - first) / (last - first), (low + span - first) / (last - first)], key);
+    }, {passive: false});
+  };
+  customElements.define('trackride-tools', class extends HTMLElement {
+    connectedCallback() {
+      this.addEventListener('click', ({target}) => {
+        const {shape, act} = target.closest('button')?.dataset ?? {};
+        if (act === 'large') document.body.dispatchEvent(new KeyboardEvent('keydown', {key: 'l', code: 'KeyL', bubbles: true}));
+        if (act === 'names') look.names = !look.names;
+        if (shape) look.shape = shape;
+        if (!shape && act !== 'names') return;
+        sessionStorage.setItem('trackride-plots', JSON.stringify(look));
+        document.querySelectorAll('trackride-tools').forEach((tools) => tools.show());
+        charts().filter((chart) => met.has(chart) && seen(chart)).forEach((chart) => chart.redraw());
+      });
+      this.show();
+    }
+
+    show() {
+      this.querySelectorAll('button[data-shape]').forEach((button) => button.ariaPressed = String(button.dataset.shape === look.shape));
+      const names = this.querySelector('button[data-act="names"]');
+      if (names) names.ariaPressed = String(look.names);
+    }
+  });
   let now = -1;  // s, of the time cursor
   window.trackridePlots = () => {
     drawMaps();
@@ -237,9 +441,9 @@ if (!window.trackridePlots) {
     return Array.from({length: last - first + 1}, (_, k) => +((first + k) * step).toFixed(9));
   };
   const drawMaps = () => document.querySelectorAll('trackride-map').forEach((map) => map.draw());
-  const zoomAll = (range) => {
-    group(TIME).zoom = range;
-    charts().filter((chart) => chart.cursor.sync?.key === TIME && inView.has(chart)).forEach(zoom);
+  const zoomAll = (range, key = TIME) => {
+    group(key).zoom = range;
+    charts().filter((chart) => chart.cursor.sync?.key === key && inView.has(chart)).forEach(zoom);
     drawMaps();
   };
   customElements.define('trackride-map', class extends HTMLElement {

@@ -23,8 +23,8 @@ MARGINS = 24  # px beside it
 FOOT = 200  # px of usual type below large plots: the player is there
 COLUMN = 340  # px of usual type that a chart needs to stand beside another
 # All from here on in px of usual type
-MODES = 520  # beside the spectrum: its boxes and the table of a paper's vehicle's modes
-PLOTS_HEAD = 66  # above the plots in their panel
+MODES = 560  # beside the spectrum: its boxes and the table of a paper's vehicle's modes
+PLOTS_HEAD = 92  # above the plots in their panel: its tabs, the plots' tools
 AXIS_NAME = 16  # that the name of the axis takes below the last plot
 LOWEST, HIGHEST = 110, 700  # of a chart
 CARD = 46  # that one plot takes beyond its chart: title, legend, margins

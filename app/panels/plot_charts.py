@@ -86,7 +86,7 @@ class Charts:
             _series(plot),
             title=f"{plot.title} ({', '.join(key)})" if key else plot.title,
             scales={
-                "x": {"time": False},
+                "x": {"time": False, "distr": 3} if plot.logarithmic else {"time": False},
                 # mode 1: up to the soft limit at least
                 "y": {"range": {"min": {"pad": 0.1} | low, "max": {"pad": 0.1} | high}},
             },
@@ -107,7 +107,10 @@ class Charts:
 
 def _shapes(plots: tuple[Plot, ...]) -> list[tuple[object, ...]]:
     """What a chart cannot change once it is made."""
-    return [(plot.title, plot.note, *((curve.label, curve.kind) for curve in plot.curves)) for plot in plots]
+    return [
+        (plot.title, plot.note, plot.logarithmic, *((curve.label, curve.kind) for curve in plot.curves))
+        for plot in plots
+    ]
 
 
 def _send(chart: viser.GuiUplotHandle, data: tuple[np.ndarray, ...]) -> None:

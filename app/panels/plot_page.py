@@ -14,6 +14,12 @@ from app.plots.spectrum import Mark
 from model.analysis.signals import window
 from model.simulation.trajectory import Trajectory
 
+SHAPES = {  # of the curves in a plot: as the page knows it, as shown, what it means
+    "auto": ("Auto", "Curves, and strips where they crowd, as on rough ground"),
+    "curves": ("Curves", "All curves in one plot"),
+    "strips": ("Strips", "One strip for each wheel, all with the same scale"),
+    "band": ("Band", "From the least to the largest of all wheels, and their mean"),
+}
 TIME_KEY, OTHER_KEY = "trackride-time", "trackride-frequency"  # charts with the same key share cursor and zoom
 
 
@@ -25,6 +31,19 @@ def plot_page() -> str:
 def tab_html(name: str) -> str:
     """HTML of something invisible in a tab, by which the page knows whether that tab is in front."""
     return str(element("trackride-tab", name=name))
+
+
+def tools_html(*, shapes: bool) -> str:
+    """HTML of the tools above the plots of a tab; shapes: it has plots of several wheels."""
+    large = element("button", "Large ⤢", type="button", data_act="large", title="Over the view, side by side (L)")
+    if not shapes:
+        return str(element("trackride-tools", large))
+    buttons = (
+        element("button", name, type="button", data_shape=key, title=hint) for key, (name, hint) in SHAPES.items()
+    )
+    choice = element("span", *buttons, role="group", aria_label="How curves are drawn")
+    names = element("button", "Names", type="button", data_act="names", title="Each wheel's name at its curve's end")
+    return str(element("trackride-tools", choice, names, large))
 
 
 def now_html(time: float) -> str:

@@ -20,7 +20,7 @@ from app.format.markup import element
 from app.panels.actions import Actions
 from app.panels.page_layout import PageLayout
 from app.panels.plot_charts import Charts
-from app.panels.plot_page import now_html, plot_page, tab_html, window_html
+from app.panels.plot_page import now_html, plot_page, tab_html, tools_html, window_html
 from app.panels.spectrum_panel import BELOW_CHART, SpectrumPanel
 from app.plots.curves import Plot, load_plots
 from app.plots.ride import ride_plots
@@ -72,6 +72,9 @@ class PlotPanel:
         for name, tab in tabs.items():
             with tab:
                 gui.add_html(tab_html(name), order=float("-inf"))
+        for name in (LOADS, RIDE, SPECTRUM):
+            with tabs[name]:
+                gui.add_html(tools_html(shapes=name != SPECTRUM), order=-1e9)
         self._stretches: dict[str, Any] = {}
         for name, order in ((SPECTRUM, BELOW_CHART), (LOAD_MAP, -1.0), (TRUST, -1.0)):
             with tabs[name]:

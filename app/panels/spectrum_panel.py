@@ -16,6 +16,7 @@ from app.plots.spectrum import named, spectrum_plot
 from app.tabs.modes import mode_titles, modes_page
 from model.analysis.modes import Mode, Modes, vehicle_modes
 from model.analysis.spectrum import excitation
+from model.config.config import FlatRoad
 from model.dynamics.equilibrium import NoEquilibriumError
 from model.simulation.trajectory import Trajectory
 
@@ -41,6 +42,11 @@ class SpectrumPanel:
             self._place: Any = gui.add_dropdown(
                 "Felt at", (HULL, SEAT), hint="Where the driver sits is set under Vehicle: Seat, forward and up"
             )
+            self._logarithmic: Any = gui.add_checkbox(
+                "Logarithmic axis",
+                False,
+                hint="Each decade of the frequency as wide as the next: more room for low ones",
+            )
             self._choice: Any = gui.add_dropdown(
                 "Show in 3-D",
                 (NO_MODE,),
@@ -50,7 +56,7 @@ class SpectrumPanel:
             )
             self._table = gui.add_html("", order=float("inf"))
         self._charts = Charts(gui, container)
-        for box in (self._kind, self._place):
+        for box in (self._kind, self._place, self._logarithmic):
             box.on_update(by_user(lambda event: actions.redraw_spectrum(), actions.fail))
         self._choice.on_update(by_user(lambda event: actions.show_mode(), actions.fail))
 
@@ -68,9 +74,11 @@ class SpectrumPanel:
             baseline,
             density=self._kind.value == DENSITY,
             at_seat=self._place.value == SEAT,
+            logarithmic=self._logarithmic.value,
         )
         self._charts.show((plot,), layout.spectrum_height(), layout.scale)
-        self._marks.content, self._table.content = marks_html(marks), modes_page(waves, self._modes)
+        self._marks.content = marks_html(marks)
+        self._table.content = modes_page(waves, self._modes, flat=isinstance(run.config.road, FlatRoad))
         titles = (NO_MODE, *mode_titles(self._modes))
         if self._choice.options != titles:
             self._choice.options = titles

@@ -53,6 +53,7 @@ class Plot:
     axis: str = TIME
     peaks: tuple[Peak, ...] = field(default=(), compare=False)
     note: str = ""  # said beside the title
+    logarithmic: bool = False  # its x, which has no 0 then
 
     @property
     def data(self) -> tuple[np.ndarray, ...]:

@@ -14,6 +14,7 @@ from model.analysis.spectrum import acceleration_density, acceleration_spectrum
 from model.simulation.trajectory import Trajectory
 
 LOWEST_END = 8.0  # Hz: the axis goes this far at least …
+LOWEST = 0.1  # Hz, on a logarithmic axis
 HARMONICS = 3.0  # … and to this many times v/λ
 DECIMALS = 4  # of the values that are plotted; the page shows no more (plots.js)
 LEAST_SAMPLES = 8  # of a run that has a spectrum
@@ -35,10 +36,11 @@ def spectrum_plot(
     *,
     density: bool = False,
     at_seat: bool = False,
+    logarithmic: bool = False,
 ) -> Plot:
     """Spectrum of the vertical acceleration over the window of the run, at the centre of mass or the driver's seat.
 
-    Amplitude, m/s², or power density, m²/s³.
+    Amplitude, m/s², or power density, m²/s³. logarithmic: the axis of the frequency is, and so has no 0.
     """
 
     def spectrum(trajectory: Trajectory) -> tuple[np.ndarray, np.ndarray]:
@@ -56,6 +58,9 @@ def spectrum_plot(
         columns += [np.interp(frequency, *spectrum(baseline), right=np.nan)]
     highest = max((HARMONICS * mark.frequency for mark in marks if mark.drives), default=0.0)
     shown = frequency <= max(LOWEST_END, highest)
+    logarithmic &= bool((frequency >= LOWEST).any())
+    if logarithmic:
+        shown &= frequency >= LOWEST
     frequency, values = thin(frequency[shown], np.column_stack(columns)[shown])
     return Plot(
         f"Vertical acceleration: {'power density' if density else 'amplitude'}",
@@ -65,6 +70,7 @@ def spectrum_plot(
         frequency,
         np.round(values, DECIMALS),
         axis="Frequency, Hz",
+        logarithmic=logarithmic,
     )
 
 

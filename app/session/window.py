@@ -61,6 +61,8 @@ class VehicleView(Protocol):
 
     def on_pick(self, act: Callable[[int], None]) -> None: ...
 
+    def mark_wheel(self, wheel: int | None) -> None: ...
+
     def wheel_state(self, wheel: int) -> WheelState | None: ...
 
     def fit_page(self, height: int, covered: float, type_scale: float) -> None: ...
@@ -379,6 +381,7 @@ class Window:
     def pick_wheel(self, wheel: int | None) -> None:
         """Show the card of a wheel and fade the other curves; None, or the wheel that is picked already: no card."""
         self._plots.single_out(self._card.pick(wheel))
+        self.view.mark_wheel(self._card.wheel)
         self._show_wheel()
 
     def _show_wheel(self) -> None:

@@ -15,7 +15,7 @@ BELOW = 0.12  # m from the lowest point of the road down to the names of the roa
 NAMES = 0.0, 0.2  # m from there down to the middle of each row of names, at the size of the paper's vehicle
 WITH_LOADS = 0.12, 0.67  # the same of names with loads, which take two lines
 UNIT_AHEAD = 0.45  # m from the first wheel to the loads' unit
-ROOM, ROOM_WITH_LOADS = 22.0, 34.0  # px of usual type that a name takes along the vehicle
+ROOM, ROOM_WITH_LOADS = 32.0, 40.0  # px of usual type that a name takes along the vehicle
 FIGURE_SPACE = "\u2007"  # as wide as a figure
 
 

@@ -26,6 +26,7 @@ TICK = 0.10  # m, half the length of a static load's tick, at the size of the pa
 FLANGE = 0.05  # m, half the length of a travel bar's end marks
 BESIDE = 0.13  # m from a wheel's centre back to its travel bar
 LINE = 0.022  # m, thickness of lines
+PICKED_RING = 1.12  # outer radius of the ring around the wheel that is picked, times the wheel's
 RING = 0.80  # inner radius of a wheel's ring, times its outer
 TRACTION_SCALE = 5.0  # times as long per newton as the loads' arrows: tractions are so much smaller
 LEAST_TRACTION = 0.01  # m of arrow: shorter ones are not drawn
@@ -139,6 +140,49 @@ class WheelRings:
             )
 
 
+class PickedWheel:
+    """A white ring around the wheel that is picked, on both sides of the vehicle."""
+
+    def __init__(self, api: viser.SceneApi, scene: Scene, now: Snapshot) -> None:
+        R, s = scene.measures.radius, scene.measures.scale
+        ring = lathe([(PICKED_RING * R, 0.01 * s), (PICKED_RING * R, -0.01 * s), (R, -0.01 * s)], (0, 0, 0, 255))
+        places = ring_places(scene, now)
+        self._wheel: int | None = None
+        self._rings = api.add_batched_meshes_simple(
+            f"{OVERLAYS}/picked",
+            ring.vertices,
+            ring.faces,
+            places.wxyzs[: len(SIDES)],
+            places.positions[: len(SIDES)],
+            batched_colors=np.full((len(SIDES), 3), 255, dtype=np.uint8),
+            side="double",
+            lod="off",
+            cast_shadow=False,
+            visible=False,
+        )
+
+    def pick(self, wheel: int | None) -> None:
+        """Mark this wheel, in the model's order; None, or one that this vehicle lacks: none."""
+        self._wheel = wheel
+        if wheel is None:
+            self._rings.visible = False
+
+    def show(self, on: Mapping[str, bool]) -> None:
+        """Nothing: it follows what is picked."""
+
+    def colour(self, theme: Theme, palette: Palette) -> None:
+        """Nothing: white stands out from wheels and track."""
+
+    def draw(self, scene: Scene, now: Snapshot) -> None:
+        count = len(scene.system.wheel)
+        if self._wheel is None or self._wheel >= count:
+            return
+        places, rows = ring_places(scene, now), [self._wheel + k * count for k in range(len(SIDES))]
+        update(self._rings, batched_positions=places.positions[rows], batched_wxyzs=places.wxyzs[rows])
+        if not self._rings.visible:
+            self._rings.visible = True
+
+
 class Grid:
     """A wall of squares behind the vehicle."""
 
@@ -200,7 +244,12 @@ class Overlays:
     def __init__(self, api: viser.SceneApi, scene: Scene, now: Snapshot) -> None:
         self._node = api.add_frame(OVERLAYS, show_axes=False)
         makers = dict.fromkeys(switch.overlay for switch in SWITCHES.values() if switch.overlay is not None)
-        self._all = [make(api, scene, now) for make in makers]
+        self._picked = PickedWheel(api, scene, now)
+        self._all = [self._picked, *(make(api, scene, now) for make in makers)]
+
+    def pick(self, wheel: int | None) -> None:
+        """Mark the wheel that is picked, in the model's order; None: none."""
+        self._picked.pick(wheel)
 
     def show(self, on: Mapping[str, bool]) -> None:
         """Take over which switches are on."""

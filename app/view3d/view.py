@@ -46,6 +46,7 @@ class View3D:
         self._ghost: Ghost | None = None
         self._picked: Callable[[int], None] = lambda wheel: None
         self._height, self._type = 900, 1.0  # px of the picture, and type by its usual size
+        self._marked: int | None = None  # wheel that is picked
         self._time = 0.0
         self._live = False  # a drive is shown, which has no time in common with a ghost
         self._origin = 0.0  # of the view along the road, m
@@ -129,6 +130,13 @@ class View3D:
     def on_pick(self, act: Callable[[int], None]) -> None:
         """Call act(wheel), which must not block, on the event loop when the user clicks a wheel (model's order)."""
         self._picked = act
+
+    def mark_wheel(self, wheel: int | None) -> None:
+        """Mark the wheel that is picked, in the model's order; None: none."""
+        self._marked = wheel
+        if self._nodes is not None:
+            self._nodes.overlays.pick(wheel)
+            self.draw(self._time)
 
     def set_switch(self, name: str, on: bool) -> None:
         """Turn one of app.view3d.overlays.SWITCHES on or off. Raises ValueError for another name."""
@@ -238,5 +246,6 @@ class View3D:
         )
         self._nodes.vehicle.on_click(lambda wheel: self._picked(wheel))
         self._nodes.labels.set_type(self._type)
+        self._nodes.overlays.pick(self._marked)
         self._colour_nodes()
         self._show_what_is_on()

@@ -122,6 +122,9 @@ class FakeView:
     def on_pick(self, act: Callable[[int], None]) -> None:
         self.pick = act
 
+    def mark_wheel(self, wheel: int | None) -> None:
+        self.marked = wheel
+
     def wheel_state(self, wheel: int) -> WheelState | None:
         return wheel_state(self.runs[-1], wheel, self.times[-1])
 

@@ -69,7 +69,7 @@ def test_from_a_pinned_vehicle_to_a_figure_that_proves_it(at_rest: Explorer) -> 
     at_rest.fold("Suspension")
     at_rest.fold("Export")
     figure = download(at_rest, "Figure", "PNG")
-    assert figure.suggested_filename == "paper-vehicle_road-damping-2.366-kn-s-m_figure.png"
+    assert figure.suggested_filename == "paper-vehicle_suspension-damping-2.366-kn-s-m_figure.png"
     assert Image.open(io.BytesIO(content(figure))).width > 2000
     run = download(at_rest, "Data", "NPZ")
     assert Trajectory.load(run.path()).config == paper.replace({DAMPING: 2366})

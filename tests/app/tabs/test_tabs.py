@@ -19,7 +19,7 @@ from app.plots.spectrum import Mark, named, spectrum_plot
 from app.tabs.about import LAWS, about_html
 from app.tabs.comfort import COMFORT_FIGURES, comfort_headline, comfort_page
 from app.tabs.load_map import load_map
-from app.tabs.modes import mode_titles, modes_page
+from app.tabs.modes import BY_ALL, BY_NOTHING, excited, mode_titles, modes_page, response
 from app.tabs.trust import balances, drift, errata_html, trust_html
 from model import load_config, simulate
 from model.analysis.comfort import ride_comfort
@@ -91,12 +91,31 @@ def test_marks_are_named_and_the_highest_comes_first() -> None:
 
 def test_all_modes_are_told_with_what_moves() -> None:
     table = modes_page(0.6, MODES)
-    assert "<th>2 Bounce</th><td>1.55 Hz</td><td>55 %</td><td>hull up and down 87\N{NO-BREAK SPACE}%</td>" in table
-    assert "<th>v/λ</th><td>0.60 Hz</td><td></td>" in table
+    assert "<th>2 Bounce</th><td>1.55 Hz</td><td>55 %</td><td>follows, ×1.1</td>" in table
+    assert "<td>hull up and down 87\N{NO-BREAK SPACE}%</td>" in table
+    assert "<th>v/λ</th><td>0.60 Hz</td><td></td><td></td>" in table
     assert re.search(r"hop of I5 \d+\s%, hop of R5 \d+\s%", table)
     assert "Hop of R1 353" in table.split("<details>")[1]
     assert "<th>v/λ" not in modes_page(None, MODES)
     assert "no rest pose" in modes_page(0.6, None)
+
+
+def test_modes_say_whether_the_road_excites_them() -> None:
+    bounce = next(mode for mode in MODES.swinging if mode.name == "Bounce")
+    assert response(0.0, 0.3) == 1.0
+    assert response(1.0, 0.05) == pytest.approx((1 + 0.01) ** 0.5 / 0.1)
+    assert excited(bounce, bounce.frequency).startswith("excited")
+    assert excited(bounce, 10 * bounce.frequency).startswith("hardly")
+    assert BY_ALL in modes_page(None, MODES)
+    assert BY_NOTHING in modes_page(None, MODES, flat=True)
+
+
+def test_a_logarithmic_axis_has_no_zero() -> None:
+    run = simulate(PAPER)
+    plot = spectrum_plot(run, "#000000", MARKS, logarithmic=True)
+    assert plot.logarithmic
+    assert plot.x[0] >= 0.1
+    assert not spectrum_plot(run, "#000000", MARKS).x[0]
 
 
 def test_each_mode_can_be_chosen_by_a_title_of_its_own() -> None:

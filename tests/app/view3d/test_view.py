@@ -323,3 +323,68 @@ def test_the_camera_fits_a_new_shape_of_the_picture_unless_moved(tab: Tab, paper
     tab.camera.image_width = 1600
     asyncio.run(tab.camera.moved(tab.camera))  # type: ignore[operator]
     np.testing.assert_array_equal(tab.camera.position, aside)
+
+
+def test_a_picked_wheel_has_a_ring_that_goes_with_it_and_goes_again(tab: Tab, paper: Trajectory) -> None:
+    view = View3D(tab)  # type: ignore[arg-type]
+    view.show(paper)
+    view.draw(0.5)
+    ring = tab.scene._handle_from_node_name["/overlays/picked"]
+    assert not ring.visible
+    view.mark_wheel(8)  # I3
+    assert ring.visible
+    tab.sent()
+    view.draw(0.6)
+    places = drawn(tab.sent(), "/overlays/picked", "batched_positions")
+    wheels = drawn_wheels(view)
+    assert np.abs(places[:, [0, 2]] - wheels[8]).max() < 1e-3
+    view.mark_wheel(None)
+    assert not ring.visible
+
+
+def drawn_wheels(view: View3D) -> np.ndarray:
+    """Centres of the wheels of one side, (W, 2) along and up in the view, at the time drawn last."""
+    scene = view._scene
+    assert scene is not None
+    q = scene.bodies(view._time)[scene.system.wheel]
+    return q[:, :2] - [float(scene.bodies(view._time)[scene.system.chassis, 0]), 0.0] + [view_x(view), 0.0]
+
+
+def view_x(view: View3D) -> float:
+    """Where the hull's centre of mass is along the view."""
+    scene = view._scene
+    assert scene is not None
+    now = scene.at(view._time)
+    return now.x - now.origin
+
+
+def test_names_are_thinned_out_where_they_would_pile_up(tab: Tab, paper: Trajectory) -> None:
+    view = View3D(tab)  # type: ignore[arg-type]
+    view.show(paper)
+    view.fit_page(250, 0.0, 1.0)
+    nodes = tab.scene._handle_from_node_name
+    for standpoint, shown in (("side", True), ("front", False), ("side", True)):
+        view.set_view(standpoint)  # type: ignore[arg-type]
+        view.write_names()
+        assert nodes["/vehicle/labels/R1"].visible
+        assert nodes["/vehicle/labels/I1"].visible
+        assert nodes["/vehicle/labels/R2"].visible == nodes["/vehicle/labels/I2"].visible == shown
+
+
+def test_names_grow_with_the_type_of_the_page(tab: Tab, paper: Trajectory) -> None:
+    view = View3D(tab)  # type: ignore[arg-type]
+    view.fit_page(1440, 0.0, 1.27)
+    view.show(paper)
+    assert tab.scene._handle_from_node_name["/vehicle/labels/R1"].font_screen_scale == 1.27
+
+
+def test_the_vehicle_stands_above_what_hides_the_foot_of_the_picture(tab: Tab, paper: Trajectory) -> None:
+    view = View3D(tab)  # type: ignore[arg-type]
+    view.show(paper)
+    before = np.array(tab.camera.look_at)
+    view.fit_page(430, 0.43, 1.0)
+    assert tab.camera.look_at[2] < before[2] - 0.3
+    tab.camera.position = tab.camera.position + np.array([0.0, 3.0, 0.0])  # by the user
+    moved = np.array(tab.camera.position)
+    view.fit_page(900, 0.0, 1.0)
+    np.testing.assert_array_equal(tab.camera.position, moved)
