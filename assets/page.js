@@ -143,8 +143,9 @@ if (!document.body.dataset.trackride) {
         give(part.querySelector('[role="slider"]'), {'aria-label': name});
         give(part.parentElement.querySelector('input[type="text"]'), {'aria-label': `${name}, as a number`});
       } else if (!part) {
-        const buttons = label.closest('div[style]')?.nextElementSibling?.querySelector('button')?.parentElement;
-        give(buttons, {role: 'group', 'aria-label': name});
+        const beside = label.closest('div[style]')?.nextElementSibling;
+        give(beside?.querySelector('button')?.parentElement, {role: 'group', 'aria-label': name});
+        give(beside?.querySelector('input, textarea'), {'aria-label': name});
       }
     });
     document.querySelectorAll('button').forEach((button) => {

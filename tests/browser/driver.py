@@ -79,8 +79,8 @@ class Explorer:
     def come_to_rest(self) -> None:
         """As after opening, but paused at the start of the run and without messages."""
         self.close_messages()
-        if self.button("● Drive").is_visible():
-            self.button("○ Run").click()
+        if self.mode("Drive").is_visible():
+            self.mode("Run", on=False).click()
             expect(self.status).to_contain_text("real time")
         if self.button("Pause").is_visible():
             self.pause()
@@ -188,4 +188,9 @@ class Explorer:
         raise AssertionError("it never stood still")
 
     def button(self, name: str) -> Locator:
-        return self.page.get_by_role("button", name=name, exact=False)
+        """A button whose name has this in it, with this case: "Reset" is not in "Import and presets"."""
+        return self.page.get_by_role("button", name=re.compile(re.escape(name)))
+
+    def mode(self, name: str, *, on: bool = True) -> Locator:
+        """The button Run or Drive of the player, while it is on, or off."""
+        return self.page.get_by_role("button", name=name, exact=True, pressed=on)

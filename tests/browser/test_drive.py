@@ -62,7 +62,7 @@ def test_the_drive_goes_on_follows_sliders_and_rests_in_the_background(at_rest: 
     page, run = at_rest.page, at_rest.run_number()
     assert not page.get_by_text("In view").is_visible()
     height = last_row(at_rest)
-    at_rest.button("○ Drive").click()
+    at_rest.mode("Drive", on=False).click()
     wait_until(at_rest, lambda: seconds(at_rest) >= 2)
     wait_until(at_rest, lambda: abs(last_row(at_rest) - height) < 1)
     curves = at_rest.curves()
@@ -96,7 +96,7 @@ def test_the_drive_goes_on_follows_sliders_and_rests_in_the_background(at_rest: 
 
     at_rest.button("Restart").click()
     wait_until(at_rest, lambda: driven(at_rest).startswith("0:00 "))
-    at_rest.button("○ Run").click()
+    at_rest.mode("Run", on=False).click()
     at_rest.wait_for_run(after=run)
     expect(at_rest.thumb("Time, s")).to_be_visible()
 
@@ -120,13 +120,13 @@ def test_keys_work_outside_of_text_boxes_only(at_rest: Explorer) -> None:
     assert len(downloads) == 1
     assert at_rest.run_number() == run
     assert at_rest.button("▶ Play").is_visible()
-    assert at_rest.button("● Run").is_visible()
+    assert at_rest.mode("Run").is_visible()
 
     page.keyboard.press(" ")
     expect(at_rest.button("Pause")).to_be_visible()
     page.keyboard.press(" ")
     expect(at_rest.button("▶ Play")).to_be_visible()
     page.keyboard.press("d")
-    expect(at_rest.button("● Drive")).to_be_visible()
+    expect(at_rest.mode("Drive")).to_be_visible()
     page.keyboard.press("d")
-    expect(at_rest.button("● Run")).to_be_visible()
+    expect(at_rest.mode("Run")).to_be_visible()

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import re
+from itertools import pairwise
 
 from playwright.sync_api import Page, expect
 
-from tests.browser.driver import Explorer
+from tests.browser.driver import NEW_CURVES, Explorer
 
 CHARTS = """() => Object.values(__viserTestpoints.uplots).map(entry => entry.chart)
     .filter(chart => chart.over.offsetParent && chart.cursor.sync.key === 'trackride-time')"""
@@ -175,14 +177,103 @@ def test_peaks_between_samples_are_dots_that_the_axis_reaches(at_rest: Explorer)
     page.wait_for_function(f"() => ({CHARTS})()[0].scales.y.max < 600")
 
 
+def tool(page: Page, name: str) -> None:
+    page.locator("trackride-tools:visible").get_by_role("button", name=name).click()
+
+
 def test_curves_are_thicker_than_a_pixel_where_there_is_room(at_rest: Explorer) -> None:
     page = at_rest.page
     show(page, "Loads")
+    tool(page, "Curves")
     page.evaluate(TELL_PEAKS, NO_PEAKS)
     page.evaluate(DRAW, [["R2"], [8] * 200])
     page.wait_for_function(f"() => ({INK})() > 1.25 && ({INK})() < 2")
     page.evaluate(DRAW, [["R2"], [8] * 50 + [0, 8] * 225])
     page.wait_for_function(f"() => ({INK})() > 0.5 && ({INK})() < 1.1")
+    tool(page, "Auto")
+
+
+def test_curves_that_crowd_become_strips_and_others_on_demand(at_rest: Explorer) -> None:
+    page = at_rest.page
+    show(page, "Loads")
+    shape = f"shape => ({CHARTS})()[0].root.dataset.shape === shape"
+    smooth, rough = [8] * 200, [8] * 50 + [0, 8] * 225
+    page.evaluate(DRAW, [["R1", "R2", "R3", "R4", "R5", "R6"], smooth])
+    page.wait_for_function(shape, arg="curves")
+    page.evaluate(DRAW, [["R1", "R2", "R3", "R4", "R5", "R6"], rough])
+    page.wait_for_function(shape, arg="strips")
+    for name in ("Band", "Curves", "Strips", "Auto"):
+        tool(page, name)
+        page.wait_for_function(shape, arg="strips" if name == "Auto" else name.lower())
+        expect(page.locator("trackride-tools:visible").get_by_role("button", name=name, pressed=True)).to_be_visible()
+    before = at_rest.curves()
+    tool(page, "Curves")
+    tool(page, "Names")
+    page.wait_for_function(NEW_CURVES, arg=before)
+    tool(page, "Names")
+    tool(page, "Auto")
+
+
+def test_a_click_in_a_plot_goes_to_that_time_which_stands_in_figures_at_the_cursor(at_rest: Explorer) -> None:
+    page = at_rest.page
+    show(page, "Loads")
+    over = page.locator(".u-over:visible").first
+    box = over.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 20)
+    expect(over.locator(".trackride-at")).to_have_text(re.compile(r"^(4\.9|5\.0)\d s$"))
+    page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 20)
+    at_rest.wait_for_value("Time, s", "Math.abs(now - 5) < 0.1")
+    page.mouse.move(640, 60)
+    expect(over.locator(".trackride-at")).to_be_hidden()
+
+
+def test_plots_open_large_by_a_key_side_by_side_and_zoom_by_wheel(at_rest: Explorer) -> None:
+    page = at_rest.page
+    show(page, "Loads")
+    at_rest.status.click()  # no box has the keys
+    page.keyboard.press("l")
+    first, second = (page.locator(".u-over:visible").nth(k) for k in range(2))
+    page.wait_for_function("() => document.documentElement.dataset.plots === 'large'")
+    at_rest.wait_until_still(lambda: (first.bounding_box(), second.bounding_box()))
+    one, other = first.bounding_box(), second.bounding_box()
+    assert one is not None
+    assert other is not None
+    assert one["y"] == other["y"]
+    assert one["x"] + one["width"] < other["x"]
+    page.mouse.move(one["x"] + 0.5 * one["width"], one["y"] + 20)
+    page.mouse.wheel(0, -100)
+    page.wait_for_function(f"() => ({RANGES})().every(([from, to]) => from > 0.5 && to < 9.5)")
+    first.dblclick()
+    page.wait_for_function(f"() => ({RANGES})().every(([from, to]) => from < 0.1 && to > 9.9)")
+    tool(page, "Large")
+    page.wait_for_function("() => document.documentElement.dataset.plots === 'beside'")
+    at_rest.wait_until_still(lambda: first.bounding_box())
+
+
+def test_names_of_frequencies_do_not_overlap(at_rest: Explorer) -> None:
+    page = at_rest.page
+    show(page, "Spectrum")
+    marks = json.dumps([[1.1, "Bounce 1.10 Hz"], [1.05, "Pitch 1.05 Hz"], [1.0, "v/λ 1.00 Hz"]])
+    page.evaluate(
+        """at => {
+          const told = document.createElement('trackride-marks');
+          told.setAttribute('for', 'trackride-frequency');
+          told.setAttribute('at', at);
+          document.body.append(told);
+          told.remove();
+        }""",
+        marks,
+    )
+    rows = """() => [...document.querySelectorAll('.trackride-frequency .trackride-marks i')].map(line => {
+      const {top, height} = getComputedStyle(line, '::after');
+      return [line.dataset.name, parseFloat(top), parseFloat(height)];
+    })"""
+    page.wait_for_function(f"() => ({rows})()[2]?.[0] === 'v/λ 1.00 Hz'")
+    places = page.evaluate(rows)
+    for (_, top, height), (_, below, _) in pairwise(places):
+        assert top + height <= below + 1
+    show(page, "Loads")
 
 
 def test_a_wheel_whose_name_is_pointed_at_is_drawn_in_front(at_rest: Explorer) -> None:
