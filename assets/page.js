@@ -159,7 +159,8 @@ if (!document.body.dataset.trackride) {
     ]) document.querySelectorAll(`.tabler-icon-${icon}`).forEach((drawn) => give(drawn.closest('button'), {
       'aria-label': name, 'data-trackride-icon': icon,
     }));
-    document.querySelectorAll('[data-trackride="panel"] .mantine-Paper-root svg[class*="tabler-icon-chevron-"]').forEach((arrow) => {
+    const arrows = '[data-trackride="panel"] .mantine-Paper-root svg[class*="tabler-icon-chevron-"]';
+    document.querySelectorAll(arrows).forEach((arrow) => {
       const open = arrow.classList.contains('tabler-icon-chevron-up');
       give(arrow, {'aria-hidden': 'true'});
       give(arrow.parentElement.parentElement, {'data-trackride-folder': open ? 'open' : 'closed'});
@@ -169,9 +170,11 @@ if (!document.body.dataset.trackride) {
     document.querySelectorAll('canvas[data-engine]').forEach((canvas) => give(canvas, {
       role: 'img', 'aria-label': 'The vehicle on its road, in three dimensions',
     }));
-    const palette = document.createTreeWalker(document.querySelector('.mantine-Spotlight-body') ?? new Text(), NodeFilter.SHOW_TEXT);
+    const commands = document.querySelector('.mantine-Spotlight-body') ?? new Text();
+    const palette = document.createTreeWalker(commands, NodeFilter.SHOW_TEXT);
     while (palette.nextNode()) {
-      const {currentNode: text} = palette, plain = text.data.replace(/\b(arrowright|arrowleft|space)$/, (key) => KEYS[key]);
+      const {currentNode: text} = palette;
+      const plain = text.data.replace(/\b(arrowright|arrowleft|space)$/, (key) => KEYS[key]);
       if (text.data !== plain) text.data = plain;
     }
   };

@@ -130,8 +130,8 @@ if (!window.trackridePlots) {
     return answer;
   };
   const stretch = (chart) => {  // numbers of the points in view, one more at both ends
-    const [from, to] = chart.series[0].idxs;
-    return Array.from({length: Math.min(to + 1, chart.data[0].length - 1) - Math.max(from - 1, 0) + 1}, (_, k) => Math.max(from - 1, 0) + k);
+    const [from, to] = chart.series[0].idxs, first = Math.max(from - 1, 0), last = Math.min(to + 1, chart.data[0].length - 1);
+    return Array.from({length: last - first + 1}, (_, k) => first + k);
   };
   const lineOf = (chart, k, points, place) => {
     const path = new Path2D();
@@ -161,7 +161,8 @@ if (!window.trackridePlots) {
     const {ctx} = chart;
     ctx.save();  // uPlot takes what it has set last for what is set
     [ctx.font, ctx.textAlign, ctx.textBaseline] = [`600 ${letters(chart)}px system-ui, sans-serif`, align, 'middle'];
-    [ctx.strokeStyle, ctx.lineWidth, ctx.lineJoin] = [getComputedStyle(document.body).backgroundColor, 3 * devicePixelRatio, 'round'];
+    [ctx.strokeStyle, ctx.lineWidth] = [getComputedStyle(document.body).backgroundColor, 3 * devicePixelRatio];
+    ctx.lineJoin = 'round';
     ctx.strokeText(text, x, y);
     ctx.fillStyle = colour;
     ctx.fillText(text, x, y);
@@ -182,7 +183,10 @@ if (!window.trackridePlots) {
       const x = chart.valToPos(time, 'x', true);
       if (x >= left && x <= left + width) { ctx.moveTo(x, top); ctx.lineTo(x, top + height); }
     });
-    runs.forEach((_, row) => { ctx.moveTo(left, top + (row + 1) * each); ctx.lineTo(left + width, top + (row + 1) * each); });
+    runs.forEach((_, row) => {
+      ctx.moveTo(left, top + (row + 1) * each);
+      ctx.lineTo(left + width, top + (row + 1) * each);
+    });
     ctx.stroke();
     runs.forEach((k, row) => {
       const place = (value) => top + (row + 1) * each - (0.06 + 0.88 * (value - low) / (high - low)) * each;
@@ -194,7 +198,8 @@ if (!window.trackridePlots) {
           ctx.stroke(lineOf(chart, curve, points, place));
         }
       });
-      write(chart, chart.series[k].label, left - 6 * px, top + (row + 0.5) * each, chart.series[k].stroke(chart, k), 'right');
+      const {label} = chart.series[k], colour = chart.series[k].stroke(chart, k);
+      write(chart, label, left - 6 * px, top + (row + 0.5) * each, colour, 'right');
     });
     const text = `each strip: ${+low.toPrecision(3)} … ${+high.toPrecision(3)} ${axis.label}`.replaceAll('-', '−');
     write(chart, text, left + width - 2 * px, top - 2 * px, axis.stroke(chart, 1), 'right');
@@ -206,7 +211,8 @@ if (!window.trackridePlots) {
     const mean = (numbers) => (point) => all(numbers)(point).reduce((sum, value) => sum + value, 0) / numbers.length;
     const colour = chart.series[runs[Math.floor(runs.length / 2)]].stroke(chart, runs[0]).slice(0, 7);
     inPlot(chart, () => {
-      const band = new Path2D(), edge = (of, point) => [chart.valToPos(chart.data[0][point], 'x', true), place(of(...all(runs)(point)))];
+      const band = new Path2D(), at = (point) => chart.valToPos(chart.data[0][point], 'x', true);
+      const edge = (of, point) => [at(point), place(of(...all(runs)(point)))];
       points.forEach((point, k) => k ? band.lineTo(...edge(Math.max, point)) : band.moveTo(...edge(Math.max, point)));
       [...points].reverse().forEach((point) => band.lineTo(...edge(Math.min, point)));
       ctx.fillStyle = `${colour}40`;
@@ -228,7 +234,10 @@ if (!window.trackridePlots) {
       .map((k) => ({k, y: chart.valToPos(chart.data[k][last], 'y', true)})).sort((a, b) => a.y - b.y);
     ends.forEach((end, row) => end.y = Math.max(end.y, row ? ends[row - 1].y + room : top + room / 2));
     ends.reduceRight((floor, end) => (end.y = Math.min(end.y, floor)) - room, top + height - room / 2);
-    ends.forEach(({k, y}) => write(chart, chart.series[k].label, left + width - 3 * devicePixelRatio, y, chart.series[k].stroke(chart, k).slice(0, 7), 'right'));
+    ends.forEach(({k, y}) => {
+      const {label} = chart.series[k], colour = chart.series[k].stroke(chart, k).slice(0, 7);
+      write(chart, label, left + width - 3 * devicePixelRatio, y, colour, 'right');
+    });
   };
   const reshape = (chart) => {
     const shape = shapeOf(chart);
@@ -323,7 +332,8 @@ if (!window.trackridePlots) {
     around?.setAttribute('data-trackride', 'chart');
     around?.parentElement.setAttribute('data-trackride', 'charts');  // plots.css puts them side by side there
     chart.root.classList.add(chart.cursor.sync.key);
-    chart.root.querySelector('.u-title').title = 'Drag across the plot to zoom in (or Ctrl and the wheel), double-click to see all; click to go to a time';
+    chart.root.querySelector('.u-title').title =
+      'Drag across the plot to zoom in (or Ctrl and the wheel), double-click to see all; click to go to a time';
     const legend = chart.root.querySelector('.u-legend');
     legend.title = 'Point at a name to see its curve in front, click it to hide the curve, with Ctrl all others';
     legend.querySelectorAll('.u-series').forEach((name, k) => {
@@ -402,7 +412,8 @@ if (!window.trackridePlots) {
     connectedCallback() {
       this.addEventListener('click', ({target}) => {
         const {shape, act} = target.closest('button')?.dataset ?? {};
-        if (act === 'large') document.body.dispatchEvent(new KeyboardEvent('keydown', {key: 'l', code: 'KeyL', bubbles: true}));
+        if (act === 'large')  // its key (app/panels/shortcuts.py)
+          document.body.dispatchEvent(new KeyboardEvent('keydown', {key: 'l', code: 'KeyL', bubbles: true}));
         if (act === 'names') look.names = !look.names;
         if (shape) look.shape = shape;
         if (!shape && act !== 'names') return;
@@ -414,7 +425,9 @@ if (!window.trackridePlots) {
     }
 
     show() {
-      this.querySelectorAll('button[data-shape]').forEach((button) => button.ariaPressed = String(button.dataset.shape === look.shape));
+      this.querySelectorAll('button[data-shape]').forEach((button) => {
+        button.ariaPressed = String(button.dataset.shape === look.shape);
+      });
       const names = this.querySelector('button[data-act="names"]');
       if (names) names.ariaPressed = String(look.names);
     }

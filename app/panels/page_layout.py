@@ -26,7 +26,7 @@ COLUMN = 340  # px of usual type that a chart needs to stand beside another
 MODES = 560  # beside the spectrum: its boxes and the table of a paper's vehicle's modes
 PLOTS_HEAD = 92  # above the plots in their panel: its tabs, the plots' tools
 AXIS_NAME = 16  # that the name of the axis takes below the last plot
-LOWEST, HIGHEST = 110, 700  # of a chart
+LOWEST, HIGHEST = 100, 700  # of a chart
 CARD = 46  # that one plot takes beyond its chart: title, legend, margins
 
 

@@ -142,7 +142,12 @@ class Camera:
             self._go_again()
 
     def spacing(self, metres: float, height: float) -> float:
-        """How far apart points on the vehicle's axis are in a picture of this height, in the unit of the height."""
+        """How far apart points on the vehicle's axis are in a picture of this height, in the unit of the height.
+
+        Infinitely far as long as the camera stands nowhere.
+        """
+        if self._pose is None:
+            return float("inf")
         ahead = np.asarray(self._camera.look_at, dtype=float) - self._camera.position
         distance = max(float(np.linalg.norm(ahead)), 1e-6)
         across = np.sqrt(max(1 - (ahead[0] / distance) ** 2, 0.0))

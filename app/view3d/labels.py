@@ -64,7 +64,7 @@ class WheelLabels:
     def thin_out(self, pixels: Callable[[float], float]) -> None:
         """Show as many names as have room; pixels: how far apart points are seen that are so many m apart, px."""
         room = (ROOM_WITH_LOADS if self._with_loads else ROOM) * self._type
-        every = int(np.ceil(min(room / max(pixels(self._spacing), 1e-3), len(self._labels))))
+        every = int(np.ceil(np.clip(room / max(pixels(self._spacing), 1e-3), 1, len(self._labels))))
         if every != self._every:
             self._every = every
             for label, name in zip(self._labels, self._names, strict=True):
