@@ -18,20 +18,29 @@ const set = (box, text) => {
 };
 const pass = (box) => box.dispatchEvent(new Event('input', {bubbles: true}));
 const tell = (name, text) => {
-  const id = document.getElementById('trackride-style')?.dataset[name];
-  if (!id) return;
-  const sign = document.querySelector(`label[for="${id}"]`).closest('[data-trackride="page"] ~ div').querySelector('input');
+  const id = document.getElementById('trackride-style')?.dataset[name], label = document.querySelector(`label[for="${id}"]`);
+  const sign = label?.closest('[data-trackride="page"] ~ div').querySelector('input');
+  if (!sign) return false;  // not there yet
   set(sign, text);
   pass(sign);
+  return true;
 };
 // viser sends what is set in a page every 50 ms at most, and of what is set in between only the last: all that is told
 // to the server takes its turn, here and in plots.js
 window.trackrideInTurn ??= (() => {
-  let free = 0;
+  const waiting = [];
+  let busy = false;
+  const next = () => {  // the next one waits from when this one was told: a busy page runs timers late, and all at once
+    const act = waiting.shift();
+    busy = act !== undefined;
+    if (busy) setTimeout(next, 100);
+    act?.();
+  };
   return (act) => {
-    const wait = Math.max(free - performance.now(), 0);
-    free = performance.now() + wait + 100;
-    setTimeout(act, wait);
+    waiting.push(act);
+    if (busy) return;
+    busy = true;
+    setTimeout(next, 0);
   };
 })();
 window.trackrideTell = tell;  // for plots.js
@@ -151,8 +160,9 @@ if (!document.body.dataset.trackride) {
     document.querySelectorAll('button').forEach((button) => {
       const [sign, name] = button.textContent.trim().split(' ');
       if (['●', '○'].includes(sign) && name) give(button, {'aria-pressed': String(sign === '●'), 'aria-label': name});
-      if (button.textContent === '✕') give(button, {'aria-label': 'Forget this run'});
-      if (button.textContent === '|◀') give(button, {'aria-label': 'To the start'});
+      const said = {'✕': 'Forget this run', '|◀': 'To the start'}[button.textContent];
+      if (said) give(button, {'aria-label': said});
+      else if (['Forget this run', 'To the start'].includes(button.ariaLabel)) button.removeAttribute('aria-label');
     });
     for (const [icon, name] of [
       ['list-search', 'All commands and their keys'], ['adjustments', 'Settings of viser'], ['maximize', 'This plot alone'],
@@ -228,7 +238,7 @@ if (!document.body.dataset.trackride) {
   let told_size = '';
   const tellSize = () => {
     const size = JSON.stringify([innerWidth, innerHeight, view().clientWidth]);
-    if (size !== told_size) trackrideInTurn(() => tell('size', told_size = size));
+    if (size !== told_size) trackrideInTurn(() => { if (tell('size', size)) told_size = size; });
   };
   customElements.define('trackride-layout', class extends HTMLElement {
     connectedCallback() {
