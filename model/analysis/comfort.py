@@ -60,8 +60,8 @@ class Comfort:
 
     @property
     def reaction(self) -> str:
-        """ISO 2631-1's word for the total."""
-        return reaction(self.total)
+        """ISO 2631-1's word for the total; none for a run that does not come to what is uneven."""
+        return reaction(self.total) if self.window.reached else "not reached"
 
 
 def reaction(acceleration: float) -> str:

@@ -408,11 +408,13 @@ def _long_waves_missing(trajectory: Trajectory) -> Iterator[RideWarning]:
     speed = float(trajectory.system.v_ref)
     enough = np.ceil(speed / (ENOUGH_WAVES * swing) / WAVE_STEP) * WAVE_STEP
     enough = min(float(enough), PARAMETER["road.longest_wave"].high)
+    shortest = min(road.length for road in roads if isinstance(road, RandomRoad))
     if speed / wave > FEW_WAVES * swing and wave < enough:
         yield RideWarning(
             f"At {3.6 * speed:.3g} km/h the random road's longest waves, {wave:g} m, are too short for the pitch",
             f"They are met {speed / wave:.2f} times a second; by itself the hull swings at {swing:.2f} Hz, and slower "
-            f"waves would pitch it, too. Set longest_wave to {enough:g} m, and the road's length to no less.",
+            f"waves would pitch it, too. Set longest_wave to {enough:g} m"
+            + (f", and the road's length, {shortest:g} m, to no less." if shortest < enough else "."),
         )
 
 

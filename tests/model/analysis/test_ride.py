@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from model import load_config, simulate
+from model.analysis.comfort import ride_comfort
 from model.analysis.energy import energy_balance
 from model.analysis.ride import (
     imaginary_share,
@@ -350,6 +351,7 @@ def test_a_random_road_without_waves_long_enough_for_the_speed(vehicle, speed, r
     assert len(said) == (enough is not None)
     if enough is not None:
         assert f"Set longest_wave to {enough} m" in said[0]
+        assert ("and the road's length, 20 m, to no less" in said[0]) == ("road.length" in road)
 
 
 def profile(points: str) -> Config:
@@ -359,7 +361,11 @@ def profile(points: str) -> Config:
 def test_a_profile_that_is_not_reached():
     """One warning, whatever there is besides it."""
     for points in ("500 0, 501 0.1, 600 0", "0 0, 500 0, 501 0.1, 600 0"):
-        (said,) = whats(standing(profile(points)))
+        run = standing(profile(points))
+        (said,) = whats(run)
+        felt = ride_comfort(run)
+        assert felt is not None
+        assert felt.reaction == "not reached"
         assert said == (
             "The run ends before a wheel comes to the profile: it begins at x = 499.95 m, the wheels came to 1.75 m"
         )
