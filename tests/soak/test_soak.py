@@ -32,7 +32,7 @@ def test_a_run_that_is_not_what_it_says_is_a_fault(monkeypatch: pytest.MonkeyPat
 
 @pytest.mark.parametrize(
     "part",
-    [lambda: connects(5), lambda: dragging(2.0), lambda: driving(10.0), lambda: interruptions(3)],
+    [lambda: connects(5), lambda: dragging(2.0), lambda: driving(10.0), lambda: interruptions(3, busy=10.0)],
     ids=["connects", "dragging", "driving", "interruptions"],
 )
 def test_the_explorer_and_its_files_outlast(part: object) -> None:
