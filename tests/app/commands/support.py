@@ -13,6 +13,22 @@ from typer.testing import CliRunner
 from app import cli
 
 ROOT = Path(__file__).parents[3]
+PATIENCE = 240.0  # s for a command, on a busy machine
+
+
+def waiting(runs: int) -> str:
+    """Code after which a process does so many runs and waits with others for a file `go`: so no study ends too soon."""
+    return f"""
+import itertools, pathlib, time
+from model.study import running
+simulate, count = running.simulate, itertools.count()
+def waiting(config):
+    if next(count) >= {runs}:
+        while not pathlib.Path("go").exists():
+            time.sleep(0.01)
+    return simulate(config)
+running.simulate = waiting
+"""
 
 
 def started(*arguments: object, folder: Path, program: tuple[str, ...] = ("-m", "app")) -> subprocess.Popen[str]:
@@ -30,7 +46,7 @@ def started(*arguments: object, folder: Path, program: tuple[str, ...] = ("-m", 
 def done(*arguments: object, folder: Path) -> tuple[int, str, str]:
     """Exit status, standard output and standard error of a command."""
     process = started(*arguments, folder=folder)
-    told, said = process.communicate(timeout=120)
+    told, said = process.communicate(timeout=PATIENCE)
     return process.returncode, told, said
 
 

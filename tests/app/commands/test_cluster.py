@@ -15,10 +15,9 @@ from typer.testing import CliRunner
 
 from app import cli
 from model.study.table import read_table
-from tests.app.commands.support import ROOT, done_here, started
+from tests.app.commands.support import PATIENCE, ROOT, done_here, started
 
 pytest.importorskip("distributed")
-PATIENCE = 200.0  # s
 STUDY = (
     "sweep", "--vary", "drive.speed_kmh=10:30:60", "--figures", "peak_load,energy_error", "--set",
     "simulation.duration=5", "--out",

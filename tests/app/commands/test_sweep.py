@@ -14,26 +14,11 @@ from typer.testing import CliRunner
 from app import cli
 from model import Trajectory
 from model.study.table import KEY, read_table
-from tests.app.commands.support import done, done_here, started
+from tests.app.commands.support import PATIENCE, done, done_here, started, waiting
 
 LONG = ("sweep", "--vary", "drive.speed_kmh=10:30:24", "--figures", "shock,peak_load.R2", "--out", "table.parquet")
 SHORT = (*LONG[:2], "drive.speed_kmh=10:30:5", *LONG[3:], "--set", "simulation.duration=1")
 ROWS = 6  # that a study has written when it is stopped
-
-# Trackride whose runs, after so many, wait for a file: no study ends before its signal comes.
-WAITING = f"""
-import itertools, pathlib, time
-from app.__main__ import main
-from model.study import running
-simulate, count = running.simulate, itertools.count()
-def waiting(config):
-    if next(count) >= {ROWS + 2}:
-        while not pathlib.Path("go").exists():
-            time.sleep(0.01)
-    return simulate(config)
-running.simulate = waiting
-main()
-"""
 
 
 def refused(*arguments: object) -> str:
@@ -46,16 +31,16 @@ def refused(*arguments: object) -> str:
 
 def stopped(folder: Path, number: int) -> tuple[int, str]:
     """Exit status and words of a long study that gets a signal in its midst."""
-    process = started(*LONG, folder=folder, program=("-c", WAITING))
+    process = started(*LONG, folder=folder, program=("-c", waiting(ROWS + 2) + "from app.__main__ import main; main()"))
     part = folder / "table.parquet.part"
-    end = time.monotonic() + 60
+    end = time.monotonic() + PATIENCE
     while not part.exists() or part.read_text().count("\n") < ROWS:
         assert process.poll() is None, process.communicate()
         assert time.monotonic() < end
         time.sleep(0.01)
     process.send_signal(number)
     (folder / "go").touch()
-    told, said = process.communicate(timeout=60)
+    told, said = process.communicate(timeout=PATIENCE)
     (folder / "go").unlink()
     return process.returncode, told + said
 
