@@ -15,10 +15,9 @@ from typer.testing import CliRunner
 
 from app import cli
 from model.study.table import read_table
-from tests.app.commands.support import ROOT, done, started
+from tests.app.commands.support import PATIENCE, ROOT, done_here, started
 
 pytest.importorskip("distributed")
-PATIENCE = 200.0  # s
 STUDY = (
     "sweep", "--vary", "drive.speed_kmh=10:30:60", "--figures", "peak_load,energy_error", "--set",
     "simulation.duration=5", "--out",
@@ -78,7 +77,7 @@ def cluster(tmp_path) -> Iterator[Cluster]:
 
 
 def test_a_study_on_a_cluster_is_the_same_to_the_last_digit_though_a_worker_is_killed(cluster, tmp_path):
-    assert done(*STUDY, "here.parquet", folder=tmp_path)[0] == 0
+    assert done_here(*STUDY, "here.parquet", folder=tmp_path)[0] == 0
     process = started(*STUDY, "there.parquet", "--scheduler", cluster.address, folder=tmp_path)
     part = tmp_path / "there.parquet.part"
     wait_until(lambda: process.poll() is not None or (part.exists() and part.read_text().count("\n") > 3))

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from app import cli
 from model import load_config
-from tests.app.commands.support import done
+from tests.app.commands.support import done, done_here
 
 DAMPING = "vehicle.road_suspension.damping"
 SHORT = ("--set", "simulation.duration=1", "--over", f"{DAMPING}=2000:20000", "--generations", "1", "--out", "found")
@@ -30,7 +30,7 @@ def test_the_best_is_written_as_a_configuration(tmp_path):
 
 def test_every_point_of_a_front_is_a_configuration(tmp_path):
     command = ("optimise", "paper", "--minimise", "absorbed_power", "--minimise", "peak_load", *SHORT)
-    assert done(*command, folder=tmp_path)[0] == 0
+    assert done_here(*command, folder=tmp_path)[0] == 0
     rows = list(csv.DictReader((tmp_path / "found" / "front.csv").open()))
     files = sorted((tmp_path / "found" / "front").iterdir())
     assert len(rows) == len(files) > 0
@@ -39,7 +39,7 @@ def test_every_point_of_a_front_is_a_configuration(tmp_path):
     assert all(load_config(file).value(DAMPING) for file in files)
     first = (tmp_path / "found" / "front.csv").read_bytes()
     runs = (tmp_path / "found" / "runs.jsonl").read_bytes()
-    assert done(*command, "--resume", folder=tmp_path)[0] == 0
+    assert done_here(*command, "--resume", folder=tmp_path)[0] == 0
     assert (tmp_path / "found" / "front.csv").read_bytes() == first
     assert (tmp_path / "found" / "runs.jsonl").read_bytes() == runs
 

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from app import cli
 from app.commands import analysis
-from tests.app.commands.support import done
+from tests.app.commands.support import done, done_here
 
 COMMAND = (
     "sensitivity", "paper", "--set", "simulation.duration=2", "--over", "drive.speed_kmh=10:20",
@@ -30,7 +30,7 @@ def test_page_figure_and_table_are_written_and_a_second_time_takes_no_runs(tmp_p
     assert {tuple(line.split(",")[:2]) for line in lines[1:]} == {
         (figure, key) for figure in ("absorbed_power", "peak_load") for key in ("drive.speed_kmh", "road.amplitude")
     }
-    assert done(*COMMAND, "--resume", folder=tmp_path)[0] == 0
+    assert done_here(*COMMAND, "--resume", folder=tmp_path)[0] == 0
     assert (folder / "table.csv").read_bytes() == first["table.csv"]
     assert (folder / "runs.jsonl").read_bytes() == first["runs.jsonl"]
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import html
 import re
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -173,19 +171,3 @@ def test_bad_input_is_said_before_computing(tmp_path, monkeypatch, name, said):
     assert result.exit_code == 2
     assert said in result.stderr
     assert trackride("report", "--set", "drive.speed_kmh=500", "--out", tmp_path / "r.html").exit_code == 2
-
-
-def test_what_makes_reports_loads_no_viser_and_no_panel():
-    """All modules of the model and of these folders, really imported; nobody needs a browser for a report."""
-    program = """
-import importlib, pkgutil, sys
-for folder in ("model", "app.format", "app.plots", "app.tabs", "app.reports"):
-    package = importlib.import_module(folder)
-    for module in pkgutil.walk_packages(package.__path__, folder + "."):
-        importlib.import_module(module.name)
-print(*sys.modules)
-"""
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    loaded = set(done.stdout.split())
-    assert {"app.reports.paper.page", "app.tabs.trust", "model.paper.study"} <= loaded
-    assert not [name for name in loaded if name.split(".")[0] == "viser" or name.startswith("app.panels")]

@@ -28,7 +28,7 @@ HERE = "127.0.0.1"
 def ask(explorer: Explorer, path: str = "/", host: str | None = None, **more: str) -> tuple[int, str]:
     """Status and text of the answer to a request; host: by what name it asks, without the port."""
     port = explorer.server.get_port()
-    connection = HTTPConnection(HERE, port, timeout=10)
+    connection = HTTPConnection(HERE, port, timeout=60)
     try:
         connection.putrequest("GET", path, skip_host=True)
         for name, value in {"Host": f"{host or HERE}:{port}", **more}.items():
