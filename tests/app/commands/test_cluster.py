@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -20,7 +21,7 @@ from tests.app.commands.support import PATIENCE, ROOT, done_here, started
 pytest.importorskip("distributed")
 STUDY = (
     "sweep", "--vary", "drive.speed_kmh=10:30:60", "--figures", "peak_load,energy_error", "--set",
-    "simulation.duration=5", "--out",
+    "simulation.duration=20", "--out",
 )  # fmt: skip
 
 
@@ -81,6 +82,7 @@ def test_a_study_on_a_cluster_is_the_same_to_the_last_digit_though_a_worker_is_k
     process = started(*STUDY, "there.parquet", "--scheduler", cluster.address, folder=tmp_path)
     part = tmp_path / "there.parquet.part"
     wait_until(lambda: process.poll() is not None or (part.exists() and part.read_text().count("\n") > 3))
+    cluster.workers[0].send_signal(signal.SIGSTOP)  # so that the study cannot end before it is killed
     assert process.poll() is None, process.communicate()
     cluster.workers[0].kill()
     told, said = process.communicate(timeout=PATIENCE)
