@@ -44,7 +44,7 @@ def limits(
         try:
             read = read_profile(file)
         except ConfigError as error:
-            fail(f"--profile {error}")
+            fail(f"--profile: {str(error).removeprefix('road.file: ')}")
         say(f"{file.name}: {read.said}.")
         measured[file.name] = read.points
     from app.reports.studies.limits import files, table

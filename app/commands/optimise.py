@@ -49,9 +49,9 @@ def optimise(
     """
     base = configuration(config, changes)
     ranges = only_ranges(parsed(over, "--over", base))
-    if len(minimise) not in (1, 2):
+    goals = tuple(goal for name in minimise if name.strip() for goal in chosen_figures(name, base, "--minimise"))
+    if len(goals) not in (1, 2) or len(set(goals)) < len(goals):
         fail("give --minimise FIGURE once, or twice for the front of two figures")
-    goals = tuple(chosen_figures(name, base, "--minimise")[0] for name in minimise)
     from app.reports.studies.optimum import files, table
     from model.study import optimum
     from model.study.design import DesignError

@@ -83,13 +83,16 @@ def sweep(
         if scheduler is not None:
             fail("--keep-runs: the runs of a cluster are not here; leave out --keep-runs or --scheduler")
     varied, wanted = parsed(vary, "--vary", base), chosen_figures(figures, base)
+    try:
+        study = make_study(base, varied, wanted, sample, seed)
+    except DesignError as error:
+        fail(str(error))
+    _check_space(study, out, keep_runs)
+    if not resume:
+        _check_unfinished(out)
     with spreading(scheduler) as spread:
+        made = Made.by(study, version("trackride"), shlex.join(["trackride", *sys.argv[1:]]))
         try:
-            study = make_study(base, varied, wanted, sample, seed)
-            _check_space(study, out, keep_runs)
-            made = Made.by(study, version("trackride"), shlex.join(["trackride", *sys.argv[1:]]))
-            if not resume:
-                _check_unfinished(out)
             with writing(out):
                 table = TableWriter(out, study, made, go_on=resume)
         except DesignError as error:

@@ -22,6 +22,7 @@ import numpy as np
 from model.analysis.signals import CENTRE_OF_MASS, Point, point_acceleration
 from model.config.config import Config, ConfigError
 from model.config.parameters import Value
+from model.config.validation import shorten
 from model.dynamics.equilibrium import NoEquilibriumError
 from model.simulation.batch import in_order
 from model.simulation.simulate import simulate, warm_up
@@ -113,9 +114,7 @@ def read_record(text: str, columns: Sequence[str] = ()) -> Signal:
         if unit not in known:
             said = f"has the unit {unit!r}" if unit else "has no unit"
             allowed = ", ".join(known)
-            raise DesignError(
-                f"column {names[column]!r} {said}; give one of {allowed}: {names[column]} [{next(iter(known))}]"
-            )
+            raise DesignError(f"column {shorten(names[column])} {said}; give one of {allowed}: t [s],a [m/s^2]")
         scale.append(known[unit])
     rows = []
     for number, line in enumerate(lines[1:], 2):
