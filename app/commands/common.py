@@ -42,7 +42,7 @@ SetOption = Annotated[
 
 def print_table(table: Table) -> None:
     """A table; nothing is broken to fit where standard output is no terminal."""
-    output.print(table, width=None if output.is_terminal else UNBROKEN)
+    (output if output.is_terminal else Console(highlight=False, width=UNBROKEN)).print(table)
 
 
 def say(message: str, style: str = "") -> None:
@@ -216,7 +216,7 @@ def _counting_in_lines(name: str, total: int, done: int) -> Callable[[], None]:
         if due():
             rate = (done - before) / max(monotonic() - began, 1e-9)
             left = timedelta(seconds=round(max(total - done, 0) / rate))
-            say(f"{name}: {done} of {total} runs, {rate:.3g} runs/s, {left} left")
+            say(f"{name}: {done} of {max(total, done)} runs, {rate:.3g} runs/s, {left} left")
 
     return count
 

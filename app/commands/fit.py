@@ -84,7 +84,7 @@ def fit(
     except DesignError as error:
         fail(f"--measured {measured}: {error}")
     point = signals.seat(base) if seat else signals.CENTRE_OF_MASS
-    runs = fitting.SPREAD * len(ranges) + 10 * fitting.STARTS * (len(ranges) + 1)
+    runs = fitting.SPREAD * len(ranges) + 15 * fitting.STARTS * (len(ranges) + 1)
     with spreading(scheduler) as everywhere, interrupt() as should_stop, counting(base.name, runs) as count:
 
         def spread(work: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:

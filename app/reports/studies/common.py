@@ -50,11 +50,13 @@ def number_cell(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def terminal_table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> Table:
-    """For the terminal: dotted names break behind dots only."""
-    shown = Table(*(Column(folded(head), overflow="fold") for head in heads))
-    for row in rows:
-        shown.add_row(*map(folded, row))
+def terminal_table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
+    """For the terminal: dotted names in the first column break behind dots only."""
+    lines = [[folded(cell) for cell in row] for row in rows]
+    named = any(DOTTED.fullmatch(row[0]) for row in rows)
+    shown = Table(*(Column(folded(head), overflow="fold", no_wrap=named and not k) for k, head in enumerate(heads)))
+    for line in lines:
+        shown.add_row(*line)
     return shown
 
 

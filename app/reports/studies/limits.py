@@ -58,7 +58,7 @@ def files(found: Sequence[Limit], bases: Sequence[Config]) -> dict[str, bytes]:
 
 def table(found: Sequence[Limit], bases: Sequence[Config]) -> Table:
     """For the terminal."""
-    return terminal_table(SHOWN, _shown(found, bases))
+    return terminal_table(SHOWN, list(_shown(found, bases)))
 
 
 def _row(limit: Limit, bases: Sequence[Config]) -> tuple[object, ...]:

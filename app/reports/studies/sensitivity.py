@@ -61,7 +61,7 @@ def _shown(row: tuple[object, ...]) -> list[str]:
 
 def table(found: Sensitivity) -> Table:
     """For the terminal."""
-    shown = Table(*SHOWN[1:], box=None, pad_edge=False)  # with lines between its columns it would be too wide
+    shown = Table(*SHOWN[1:], box=None, pad_edge=False)  # lines between its columns would make it too wide
     last = ""
     for row in rows(found):
         figure, key, *numbers = _shown(row)
