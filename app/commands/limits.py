@@ -10,7 +10,7 @@ import typer
 from app.commands.analysis import FolderOption, ResumeOption, SchedulerOption, remembered, write_results
 from app.commands.common import DIVERGED, SetOption, configuration, fail, print_table, say
 
-EXAMPLE = "Example: trackride limits paper m113 marder --seeds 3 --out build/limits"
+EXAMPLE = "Example: trackride limits paper m113 marder --seeds 1 --out build/limits"
 
 
 def limits(
