@@ -138,7 +138,7 @@ def _checking(out: Path, option: str = "--out") -> Iterator[None]:
 
 
 def _check_writes_into(out: Path, folder: Path, option: str = "--out") -> None:
-    if not folder.is_dir():
+    if not folder.exists():
         fail(f"{option} {out}: there is no folder {folder}; make it, or give another one")
     try:
         with tempfile.TemporaryFile(dir=folder):
