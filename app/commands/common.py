@@ -138,14 +138,12 @@ def _checking(out: Path, option: str = "--out") -> Iterator[None]:
 
 
 def _check_writes_into(out: Path, folder: Path, option: str = "--out") -> None:
-    if not folder.exists():
-        fail(f"{option} {out}: there is no folder {folder}; make it, or give another one")
     try:
         with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError as error:
-        # The folder is there: what is missing is the file, which the system would not make
-        reason = "the system lets nobody make files there" if isinstance(error, FileNotFoundError) else error.strerror
+        refused = isinstance(error, FileNotFoundError) and folder.exists()  # what is missing is the file to be made
+        reason = "the system lets nobody make files there" if refused else error.strerror
         fail(f"{option} {out}: cannot write into the folder {folder}: {reason}")
 
 
