@@ -30,6 +30,7 @@ class Figure:
     meaning: str
     of: Callable[[Summary], Reading]  # in the unit; of each wheel where it is per wheel, road wheels first
     per_wheel: bool = False
+    road_wheels_only: bool = False  # where it is per wheel
     better: Literal["smaller", "larger"] | None = "smaller"  # None: neither, as such
     least: float = 1e-3  # in the unit: a baseline smaller than this is as good as nothing
     grows: Literal["window", "run"] | None = None  # with what it grows
@@ -130,6 +131,7 @@ TRAVEL = Figure(
     "of each road wheel in the hull, from its lowest to its highest place in the whole run",
     lambda of: 1e3 * (of.travel_up - of.travel_down),
     per_wheel=True,
+    road_wheels_only=True,
     better=None,
     least=1e-2,
 )

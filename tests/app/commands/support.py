@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 from contextlib import chdir
@@ -12,6 +13,7 @@ from typer.testing import CliRunner
 
 from app import cli
 
+PROGRESS = re.compile(r"^.*: \d+ of \d+ runs, .* left\n", re.MULTILINE)  # told where a machine is slow
 ROOT = Path(__file__).parents[3]
 PATIENCE = 240.0  # s for a command, on a busy machine
 
@@ -22,11 +24,11 @@ def waiting(runs: int) -> str:
 import itertools, pathlib, time
 from model.study import running
 simulate, count = running.simulate, itertools.count()
-def waiting(config):
+def waiting(*args, **options):
     if next(count) >= {runs}:
         while not pathlib.Path("go").exists():
             time.sleep(0.01)
-    return simulate(config)
+    return simulate(*args, **options)
 running.simulate = waiting
 """
 
@@ -44,14 +46,14 @@ def started(*arguments: object, folder: Path, program: tuple[str, ...] = ("-m", 
 
 
 def done(*arguments: object, folder: Path) -> tuple[int, str, str]:
-    """Exit status, standard output and standard error of a command."""
+    """Exit status, standard output and standard error of a command, but for its progress."""
     process = started(*arguments, folder=folder)
     told, said = process.communicate(timeout=PATIENCE)
-    return process.returncode, told, said
+    return process.returncode, told, PROGRESS.sub("", said)
 
 
 def done_here(*arguments: object, folder: Path) -> tuple[int, str, str]:
     """As `done`, in this process."""
     with chdir(folder):
         result = CliRunner().invoke(cli.cli, [*map(str, arguments)])
-    return result.exit_code, result.stdout, result.stderr
+    return result.exit_code, result.stdout, PROGRESS.sub("", result.stderr)

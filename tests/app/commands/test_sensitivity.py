@@ -51,6 +51,7 @@ def test_bad_input_is_refused(arguments, words, tmp_path):
     result = CliRunner().invoke(cli.cli, ["sensitivity", "paper", *arguments, "--out", str(tmp_path / "found")])
     assert result.exit_code == 2
     assert words in result.stderr
+    assert not (tmp_path / "found").exists()
 
 
 def test_ctrl_c_keeps_the_runs(tmp_path, monkeypatch):
@@ -62,5 +63,15 @@ def test_ctrl_c_keeps_the_runs(tmp_path, monkeypatch):
     monkeypatch.setattr(analysis, "interrupt", interrupted)
     result = CliRunner().invoke(cli.cli, COMMAND)
     assert result.exit_code == 130
-    assert "Interrupted: 1 runs are kept in found/runs.jsonl; go on with --resume." in result.stderr
-    assert [path.name for path in (tmp_path / "found").iterdir()] == ["runs.jsonl"]
+    assert "Interrupted: what was done is kept in found/runs.jsonl.part; go on with --resume." in result.stderr
+    assert [path.name for path in (tmp_path / "found").iterdir()] == ["runs.jsonl.part"]
+    kept = (tmp_path / "found" / "runs.jsonl.part").read_bytes()
+    assert kept.count(b"\n") == 1
+    again = CliRunner().invoke(cli.cli, COMMAND)
+    assert again.exit_code == 2
+    assert "found/runs.jsonl.part: holds the runs of a study that was stopped; go on with --resume" in again.stderr
+    assert (tmp_path / "found" / "runs.jsonl.part").read_bytes() == kept
+    (tmp_path / "found" / "runs.jsonl.part").write_text("no runs\n")
+    other = CliRunner().invoke(cli.cli, [*COMMAND, "--resume"])
+    assert other.exit_code == 2
+    assert "holds no runs of a study; delete it" in other.stderr

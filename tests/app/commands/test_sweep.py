@@ -87,6 +87,10 @@ def test_ctrl_c_keeps_what_is_done(tmp_path, whole):
     part = read_table(tmp_path / "table.parquet")
     assert ROWS - 2 <= part.num_rows < 24
     assert part.equals(whole.slice(0, part.num_rows))
+    status, _, said = done_here(*LONG, folder=tmp_path)
+    assert status == 2
+    assert said.startswith(f"table.parquet: holds {part.num_rows} of 24 runs of a study that was stopped; go on with")
+    assert read_table(tmp_path / "table.parquet").equals(part)
     assert done_here(*LONG, "--resume", folder=tmp_path)[0] == 0
     assert read_table(tmp_path / "table.parquet").equals(whole)
 
@@ -95,7 +99,7 @@ def test_a_study_of_which_no_run_comes_to_its_end(tmp_path):
     heavy = ("--set", "vehicle.imaginary_suspension.preload_force=60000")
     status, told, said = done_here(*SHORT, *heavy, folder=tmp_path)
     assert status == 3
-    assert told == "5 of 5 runs are in table.parquet; 5 did not come to their end: see the column status.\n"
+    assert told == "5 of 5 runs are in table.parquet; incomplete: 5, see the column status.\n"
     assert said == "No run came to its end.\n"
     assert all(
         text.startswith("no rest pose: ") for text in read_table(tmp_path / "table.parquet")["status"].to_pylist()
