@@ -198,8 +198,8 @@ def serve(
 
 def _warn(console: Console, explorer: Explorer) -> None:
     """Say who else can open the page, and how."""
-    if explorer.listening.everywhere:
-        console.print(f"From other machines: [bold]{explorer.address_at(socket.gethostname())}[/bold]")
+    if explorer.listening.everywhere and (host := explorer.listening.from_elsewhere):
+        console.print(f"From other machines: [bold]{explorer.address_at(host)}[/bold]", highlight=False)
     if explorer.with_token:
         who = "Who has this address, with its token, can open it from other machines."
     else:
