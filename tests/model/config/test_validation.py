@@ -54,6 +54,8 @@ def only_fault(text: str) -> tuple[str, str]:
         (f"{WHEELS}.offset", "2", "the wheels stand at 3.75 to 0.25 m; the centre of mass"),
         ("vehicle.imaginary_wheels.enabled", "2", "give true or false"),
         (f"{ROAD_SPRING}.basis", "axle", "give one of wheel, torsion"),
+        (f"{ROAD_SPRING}.bump_travel", "0.5", "less than 0.4697 m"),
+        (f"{ROAD_SPRING}.rebound_travel", "0.25", "less than 0.2303 m"),
         (f"{ROAD_SPRING}.damping", "[1, 2]", "2 values for 6 road wheels; give 6, or one number for all"),
         ("drive.speed_kmh", "500", "give a number from 0.5 to 100 km/h"),
         ("simulation.duration", "1000000", "from 0.1 to 600 s"),
