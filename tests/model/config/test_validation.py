@@ -111,6 +111,12 @@ def test_values_that_do_not_fit_each_other(section, values, path, words):
     assert words in message
 
 
+@pytest.mark.parametrize("value", [True, 15j])
+def test_what_python_takes_for_a_number_may_be_none(value):
+    with pytest.raises(ConfigError, match=r"drive\.speed_kmh.*is not allowed"):
+        Config().replace({"drive.speed_kmh": value})
+
+
 def test_two_ways_to_say_the_same():
     text = """
 vehicle:
