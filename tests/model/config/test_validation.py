@@ -102,6 +102,7 @@ def test_each_kind_of_fault(path, value, words):
         ("road", "type: random, roughness_class: I", "road.roughness_class", "give one of A, B, C, D, E, F, G, H"),
         ("road", "type: random, seed: -1", "road.seed", "give a whole number from 0 to 999999"),
         ("road", "type: profile, points: '0 0, 1 x'", "road.points", "point 2: 'x' is no number"),
+        ("road", "type: profile, points: '-3 0, 0 0, 1 0.2, 9 0'", "road.points", "not level under the vehicle"),
         ("road", "type: profile, points: [0, 0]", "road.points", "give points x y, x y, … in m, x growing"),
     ],
 )
