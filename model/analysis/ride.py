@@ -24,6 +24,7 @@ from model.simulation.accuracy import APART_NOTED, ENERGY_NOTED, advice, energy_
 from model.simulation.trajectory import Trajectory, wheel_names
 
 ARM_LIMIT = np.radians(45)  # turn of a road arm beyond which the model is doubtful
+LEAN_LIMIT = 10.0  # °, of the hull at rest, beyond which a reader is warned
 SINKING_LIMIT = 0.1  # penetration, as a share of the wheel's radius
 FLOOR_STEP = 0.01  # m between points at which the hull's floor is held against the road
 FEW_WAVES = 0.65  # times the hull's slowest mode at which the longest waves are met: from there on pitch is too small …
@@ -264,6 +265,7 @@ def motion_warnings(trajectory: Trajectory) -> list[RideWarning]:
     """Those of the warnings that need no road."""
     return [
         *_inexact(trajectory),
+        *_leaning(trajectory),
         *_arms_turned_far(trajectory),
         *_vehicle_in_the_air(trajectory),
         *_wheels_in_phase(trajectory),
@@ -313,6 +315,17 @@ def _inexact(trajectory: Trajectory) -> Iterator[RideWarning]:
     if found:
         words = " and ".join(found)
         yield RideWarning(f"The run is not exact: {words}", advice(trajectory.config.simulation))
+
+
+def _leaning(trajectory: Trajectory) -> Iterator[RideWarning]:
+    """Of the rest pose, where the run begins."""
+    lean = np.degrees(trajectory.q[0, trajectory.system.chassis, 2]) if trajectory.t[0] == 0 else 0.0
+    if abs(lean) > LEAN_LIMIT:
+        yield RideWarning(
+            f"The hull leans {'back' if lean > 0 else 'for'}wards by {abs(lean):.3g}° at rest",
+            "Its springs hardly hold it, or the centre of mass is far from the wheels' middle: stiffen the suspension, "
+            "or move the wheels (vehicle.road_wheels.offset).",
+        )
 
 
 def _arms_turned_far(trajectory: Trajectory) -> Iterator[RideWarning]:

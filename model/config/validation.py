@@ -355,7 +355,8 @@ def _few_samples(output_rate: float, duration: float) -> str | None:
     if output_rate * duration <= SAMPLE_LIMIT:
         return None
     samples = f"{number_text(duration)} s at {number_text(output_rate)} samples a second"
-    return f"{samples} are more than the {SAMPLE_LIMIT} samples that are allowed"
+    fits = f"{SAMPLE_LIMIT // duration:.0f} a second, or {SAMPLE_LIMIT // output_rate:.0f} s, would do"
+    return f"{samples} are more than the {SAMPLE_LIMIT} samples that are allowed; {fits}"
 
 
 def _few_steps(step: float, duration: float, integrator: str) -> str | None:

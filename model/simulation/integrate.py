@@ -44,7 +44,7 @@ LONGEST_STEP = 0.02  # s
 FIRST_STEP = 1e-4  # s, to be tried
 STIFF_STEP = 1e-3  # s
 STIFFER = 1.05  # than at first, when wheels sink in more deeply
-LOOK = 0.1  # s of wall time between two looks at whether to stop, at most; see also STEPS_PER_CHUNK
+LOOK = 0.05  # s of wall time after which it is asked whether to stop: within a step of SciPy's it may be twice that
 SWING = 1.0  # m that wheels may move along the hull
 RADII_PER_STEP = 0.5  # no step runs past an obstacle
 

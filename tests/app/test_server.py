@@ -22,6 +22,7 @@ import app.cli
 import app.server
 from app.commands.common import STOPPING
 from app.server import Explorer, ServerError, free_port, serve
+from app.web.admission import Listening
 from model.config.config import load_config
 from model.simulation.trajectory import Trajectory
 from tests.app.conftest import PATIENCE, Tab, simulate_at_once, trackride_threads, wait_for
@@ -171,12 +172,13 @@ def test_it_warns_when_others_can_open_it(
         raise KeyboardInterrupt
 
     monkeypatch.setattr(viser.ViserServer, "sleep_forever", interrupt)
+    monkeypatch.setattr(Listening, "from_elsewhere", "192.0.2.7")
     serve(PAPER, "paper", host="0", port=0, open_browser=False, with_token=with_token)
     said = capsys.readouterr().out
     page, elsewhere = (re.search(f"{start}: http://([^/ ]+):\\d+(/?\\S*)", said) for start in ("explorer", "machines"))
     assert page is not None
     assert elsewhere is not None
-    assert (page[1], elsewhere[1]) == ("127.0.0.1", socket.gethostname())
+    assert (page[1], elsewhere[1]) == ("127.0.0.1", "192.0.2.7")
     assert page[2] == elsewhere[2]
     assert bool(page[2]) == with_token
     assert ("Everyone in this network" in said) != with_token

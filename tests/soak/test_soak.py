@@ -6,6 +6,7 @@ import pytest
 
 from tests.soak.draws import drawn
 from tests.soak.files import check_file
+from tests.soak.mutants import MUTANTS, ROOT
 from tests.soak.outcome import Outcome
 from tests.soak.runs import check_run
 from tests.soak.server import connects, dragging, driving
@@ -28,6 +29,11 @@ def test_a_number_names_a_configuration() -> None:
 def test_a_run_that_is_not_what_it_says_is_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tests.soak.runs.DRIFT", -1.0)
     assert "joints" in check_run(3)[1]
+
+
+def test_the_text_that_a_mutant_changes_stands_once_in_its_file() -> None:
+    wrong = [m for m in MUTANTS if (ROOT / m.file).read_text().count(m.old) != 1 or m.old == m.new]
+    assert wrong == []
 
 
 @pytest.mark.parametrize(

@@ -123,6 +123,8 @@ def test_all_spellings_of_everywhere_are_not(host: str) -> None:
     assert listening.everywhere
     assert not listening.local
     assert listening.browsable == ("[::1]" if ":" in host else HERE)
+    others = listening.from_elsewhere  # of the same family as it listens on
+    assert others is None or others.startswith("[") == (":" in host)
 
 
 def test_an_address_of_this_machine_is_not_local() -> None:

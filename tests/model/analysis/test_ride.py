@@ -250,6 +250,14 @@ def test_too_few_samples_for_comfort():
     assert "200 1/s" in str(warnings(run)[-1])
 
 
+def test_a_hull_that_leans_at_rest():
+    run = standing()
+    run.q[:, :, 2] = np.radians(-27.0)  # arms and all: no arm turns in the hull
+    assert "The hull leans forwards by 27° at rest" in whats(run)
+    run.t[:] += 1.0  # a stretch of a drive does not begin at rest
+    assert not any("leans" in what for what in whats(run))
+
+
 def test_a_crest_factor_above_nine():
     run = standing(samples=2001)
     run.a[1000, 0, 1] = 30.0
