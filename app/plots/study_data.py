@@ -1,0 +1,148 @@
+"""What the page draws of studies, as data for assets/study.js: names, units and numbers as they are shown. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+from app.format.command_line import Source
+from app.format.load_unit import KILONEWTON, LoadUnit
+from app.format.parameters import shown_number
+from model.analysis.figures import FIGURE, LOAD_PEAK
+from model.config.config import Config
+from model.study.design import Range
+from model.study.profiler import LEVELS, Curve, Profile, decisive, effects, range_text
+
+Data = dict[str, Any]
+DIGITS = 6  # of numbers that are drawn
+
+
+class FigureUnit:
+    """A figure with the unit and the factor in which it is shown; loads in the vehicle's unit."""
+
+    def __init__(self, name: str, unit: LoadUnit) -> None:
+        of, _, self.wheel = name.partition(".")
+        figure = FIGURE[of]
+        self.name, self.label, self.unit, self.factor = name, figure.label, figure.unit, 1.0
+        if figure.unit == LOAD_PEAK.unit:
+            self.unit, self.factor = unit.name, KILONEWTON.newtons / unit.newtons
+        if self.wheel:
+            self.label = f"{self.label}, {self.wheel}"
+
+    @property
+    def data(self) -> Data:
+        return {"name": self.name, "label": self.label, "unit": self.unit}
+
+
+def profile_data(
+    profile: Profile, baseline: Profile | None, loads: LoadUnit, rows: Sequence[str], columns: Sequence[str]
+) -> Data:
+    """A profile, and that of the baseline over the same ranges.
+
+    rows, columns: figures and keys that the profiler shows; others are there for the strips on sliders only.
+    """
+    shown = [FigureUnit(name, loads) for name in profile.figures]
+    told = []
+    for k, figure in enumerate(shown):
+        found = effects(profile, figure.name)
+        told.append(
+            figure.data
+            | {
+                "now": _number(profile.present[k] * figure.factor),
+                "before": None if baseline is None else _number(baseline.present[k] * figure.factor),
+                "shown": figure.name in rows,
+                "effects": [[effect.key, _number(effect.reach * figure.factor), effect.way] for effect in found],
+                "decisive": len(decisive(found)),
+            }
+        )
+    factors = np.array([figure.factor for figure in shown])
+    others = {} if baseline is None else {curve.axis.key: curve for curve in baseline.curves}
+    return {
+        "level": profile.level,
+        "done": profile.level == LEVELS[-1],
+        "figures": told,
+        "columns": [
+            axis_data(profile.base, curve.axis)
+            | _curve_data(profile.base, curve, factors)
+            | {
+                "shown": curve.axis.key in columns,
+                "baseline": None
+                if curve.axis.key not in others
+                else _curve_data(profile.base, others[curve.axis.key], factors)
+                | {"now": _shown(baseline.base, curve.axis.key) if baseline is not None else None},
+            }
+            for curve in profile.curves
+        ],
+    }
+
+
+def axis_data(config: Config, axis: Range) -> Data:
+    """A parameter: names, range, step of its slider and present value, as shown."""
+    parameter = config.parameter(axis.key)
+    value = config.value(axis.key)
+    _, _, step = parameter.slider(float(value) if isinstance(value, int | float) else 0.0)
+    low, high, step = (shown_number(parameter, number) for number in (axis.low, axis.high, step))
+    return {
+        "key": axis.key,
+        "label": parameter.label,
+        "unit": parameter.shown_unit,
+        "low": low,
+        "high": high,
+        "step": step,
+        "now": _shown(config, axis.key),
+    }
+
+
+def _shown(config: Config, key: str) -> float | None:
+    value = config.value(key)
+    return shown_number(config.parameter(key), value) if isinstance(value, int | float) else None
+
+
+def _curve_data(config: Config, curve: Curve, factors: np.ndarray) -> Data:
+    """Shown values of the parameter, and a list of shown numbers for each figure."""
+    scale = config.parameter(curve.axis.key).shown_factor
+    band = curve.band
+    return {
+        "x": _numbers(curve.values * scale),
+        "y": _table(curve.figures * factors),
+        "band": None
+        if band is None
+        else {
+            "x": _numbers(band.values * scale),
+            "low": _table(band.low * factors),
+            "high": _table(band.high * factors),
+        },
+    }
+
+
+def profile_commands(profile: Profile, source: Source, rows: Sequence[str], columns: Sequence[str]) -> list[str]:
+    """Command lines that repeat the curves, one for each parameter."""
+    return [
+        source.command(
+            "sweep",
+            "--vary",
+            range_text(curve.axis, profile.level),
+            "--figures",
+            ",".join(rows),
+            "--out",
+            f"{curve.axis.key.rpartition('.')[2]}.csv",
+        )
+        for curve in profile.curves
+        if curve.axis.key in columns
+    ]
+
+
+def _number(value: float) -> float | None:
+    """A number that JSON has, free of digits that nobody sees."""
+    return float(f"{value:.{DIGITS}g}") if np.isfinite(value) else None
+
+
+def _numbers(values: Iterable[float]) -> list[float | None]:
+    return [_number(value) for value in values]
+
+
+def _table(values: np.ndarray) -> list[list[float | None]]:
+    """A list for each figure of (N, F)."""
+    return [_numbers(column) for column in values.T]
