@@ -317,6 +317,155 @@ if (!window.trackrideStudy) {
     },
   };
 
+  // ── Map ──
+  const RAMP = {  // from little to much: lightness tells it too
+    light: [[247, 251, 255], [198, 219, 239], [107, 174, 214], [33, 113, 181], [8, 48, 107]],
+    dark: [[24, 28, 38], [22, 58, 98], [36, 106, 164], [106, 172, 214], [224, 240, 252]],
+  };
+  const colourAt = (part, ramp) => {
+    const along = Math.min(Math.max(part, 0), 1) * (ramp.length - 1), k = Math.min(Math.floor(along), ramp.length - 2);
+    return `rgb(${ramp[k].map((one, c) => Math.round(one + (along - k) * (ramp[k + 1][c] - one)))})`;
+  };
+  const between = (values, fx, fy) => {  // on a grid, at fractions of its places; null beside a gap
+    const [rows, columns] = [values.length, values[0].length];
+    const [i, j] = [Math.min(Math.floor(fx), columns - 2), Math.min(Math.floor(fy), rows - 2)], [u, v] = [fx - i, fy - j];
+    const four = [values[j][i], values[j][i + 1], values[j + 1][i], values[j + 1][i + 1]];
+    if (four.includes(null)) return values[Math.round(fy)][Math.round(fx)];
+    return four[0] * (1 - u) * (1 - v) + four[1] * u * (1 - v) + four[2] * (1 - u) * v + four[3] * u * v;
+  };
+  const contour = (values, level, x, y) => {  // the line at a level: where it crosses the triangles of each cell
+    let line = '';
+    for (let j = 0; j + 1 < values.length; j++) for (let i = 0; i + 1 < values[0].length; i++) {
+      const corners = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]];
+      if (corners.some(([a, b]) => values[b][a] === null)) continue;
+      for (const three of [[0, 1, 2], [0, 2, 3]]) {
+        const cuts = [];
+        for (let k = 0; k < 3; k++) {
+          const [p, q] = [corners[three[k]], corners[three[(k + 1) % 3]]], [from, to] = [values[p[1]][p[0]], values[q[1]][q[0]]];
+          if ((from < level) === (to < level)) continue;
+          const part = (level - from) / (to - from);
+          cuts.push(`${x(p[0] + part * (q[0] - p[0])).toFixed(1)} ${y(p[1] + part * (q[1] - p[1])).toFixed(1)}`);
+        }
+        if (cuts.length === 2) line += `M${cuts.join('L')}`;
+      }
+    }
+    return line;
+  };
+  const FINE = 6;  // squares in each cell of the grid, along each side
+  const figureMap = (data, width, height, colours, ramp) => {
+    const {x: across, y: up, values, figure} = data, left = 52, right = 66, top = 24, foot = 40;
+    const high = Math.min(height - top - foot, 1.1 * (width - left - right)), end = width - right, bottom = top + high;
+    const total = bottom + foot;
+    const x = scale(left, end, across.low, across.high), y = scale(bottom, top, up.low, up.high);
+    const i = (place) => scale(left, end, 0, across.at.length - 1)(place), j = (place) => scale(bottom, top, 0, up.at.length - 1)(place);
+    const all = values.flat().filter((value) => value !== null);
+    const [least, most] = all.length ? [Math.min(...all), Math.max(...all)] : [0, 1];
+    // Half of all runs get half of the ramp, or one run that goes wild would leave all others one colour
+    const sorted = [...all].sort((a, b) => a - b), middle = sorted[Math.floor(sorted.length / 2)] ?? 0;
+    const bend = most > least ? Math.log(0.5) / Math.log(Math.min(Math.max((middle - least) / (most - least), 0.03), 0.97)) : 1;
+    const part = (value) => most > least ? ((value - least) / (most - least)) ** bend : 0;
+    const svg = make('svg', {
+      viewBox: `0 0 ${width} ${total}`, width, height: total, xmlns: 'http://www.w3.org/2000/svg', role: 'img',
+      'aria-label': `${figure.label} over ${across.label} and ${up.label}`,
+    });
+    svg.append(text(left, 15, `${figure.label}${figure.unit ? `, ${figure.unit}` : ''}`, {fill: colours.ink, weight: 600, size: 11.5}));
+    const [columns, rows] = [(across.at.length - 1) * FINE, (up.at.length - 1) * FINE];
+    const canvas = html('canvas', {width: columns, height: rows}), paint = canvas.getContext('2d');
+    for (let r = 0; r < rows; r++) for (let c = 0; c < columns; c++) {
+      const value = between(values, (c + 0.5) / FINE, (r + 0.5) / FINE);
+      if (value === null) continue;
+      paint.fillStyle = colourAt(part(value), ramp);
+      paint.fillRect(c, rows - 1 - r, 1, 1);
+    }
+    svg.append(make('rect', {x: left, y: top, width: end - left, height: high, fill: colours.grid}));
+    svg.append(make('image', {href: canvas.toDataURL(), x: left, y: top, width: end - left, height: high, preserveAspectRatio: 'none'}));
+    // Lines where the ramp has gone on by a sixth, at round numbers
+    const digits = (value) => Number(value.toPrecision(2));
+    const levels = most > least
+      ? [...new Set([1, 2, 3, 4, 5].map((k) => digits(least + (k / 6) ** (1 / bend) * (most - least))))] : [];
+    levels.forEach((level) => svg.append(make('path', {
+      d: contour(values, level, i, j), fill: 'none', stroke: part(level) > 0.5 === (ramp === RAMP.light) ? '#ffffffc0' : '#000000a0',
+      'stroke-width': 1,
+    })));
+    ticks(across.low, across.high, (end - left) / 50).forEach((tick) => svg.append(
+      make('path', {d: `M${x(tick).toFixed(1)} ${bottom}v4`, stroke: colours.frame}),
+      text(x(tick), bottom + 15, words(tick, 4), {fill: colours.dim, size: 10, anchor: 'middle'})));
+    ticks(up.low, up.high, high / 40).forEach((tick) => svg.append(
+      make('path', {d: `M${left} ${y(tick).toFixed(1)}h-4`, stroke: colours.frame}),
+      text(left - 7, y(tick) + 3.5, words(tick, 4), {fill: colours.dim, size: 10, anchor: 'end'})));
+    svg.append(text((left + end) / 2, bottom + 32, `${across.label}, ${across.unit}`, {fill: colours.ink, anchor: 'middle', weight: 500}));
+    svg.append(text(13, (top + bottom) / 2, `${up.label}, ${up.unit}`, {fill: colours.ink, anchor: 'middle', weight: 500, turn: -90}));
+    const bar = end + 12, COUNT = 60;
+    for (let k = 0; k < COUNT; k++) svg.append(make('rect', {
+      x: bar, y: (bottom - (k + 1) / COUNT * high).toFixed(2), width: 11, height: (high / COUNT + 0.5).toFixed(2),
+      fill: colourAt((k + 0.5) / COUNT, ramp),
+    }));
+    [least, ...levels, most].forEach((level) => svg.append(
+      make('path', {d: `M${bar + 11} ${(bottom - part(level) * high).toFixed(1)}h3`, stroke: colours.dim}),
+      text(bar + 16, bottom - part(level) * high + 3.5, words(level), {fill: colours.dim, size: 10})));
+    const marker = make('g', {class: 'now'});
+    svg.append(marker);
+    const mark = () => {
+      const [a, b] = [present(across), present(up)];
+      if (marker.value === `${a} ${b}`) return;
+      marker.value = `${a} ${b}`;
+      marker.replaceChildren();
+      if (a === null || b === null) return;
+      const [px, py] = [x(a), y(b)];
+      marker.append(
+        make('path', {d: `M${px} ${top}V${bottom}M${left} ${py}H${end}`, stroke: colours.now, 'stroke-dasharray': '2 3', opacity: 0.9}),
+        make('circle', {cx: px, cy: py, r: 5, fill: 'none', stroke: '#fff', 'stroke-width': 4}),
+        make('circle', {cx: px, cy: py, r: 5, fill: 'none', stroke: colours.now, 'stroke-width': 2.2}));
+    };
+    mark();
+    return {svg, mark, x, y, left, end, top, bottom, high, size: [width, total]};
+  };
+  study.views.map = {
+    empty: 'The map comes when you rest for a moment.',
+    draw(body, data, width, height) {
+      const drawn = figureMap(data, width, height, look(), isDark() ? RAMP.dark : RAMP.light), {svg} = drawn;
+      const {figures, keys} = study.offer, keyList = keys.map(([key, label, group]) => [key, `${group}: ${label}`]);
+      const readout = html('div', {className: 'readout', hidden: true});
+      const lists = [
+        picker('Another figure', [drawn.left, 0, 220, 20], figures.map(({name, label}) => [name, label]), data.figure.name, (of) => choose({of})),
+        picker('Another parameter across', [drawn.left, drawn.bottom + 19, drawn.end - drawn.left, 18], keyList, data.x.key, (x) => choose({x})),
+        picker('Another parameter upwards', [0, drawn.top + drawn.high / 2 - 60, 22, 120], keyList, data.y.key, (y) => choose({y})),
+      ];
+      const spot = (event) => {
+        const box = svg.getBoundingClientRect(), zoom = box.width / drawn.size[0];
+        const [px, py] = [(event.clientX - box.left) / zoom, (event.clientY - box.top) / zoom];
+        if (px < drawn.left || px > drawn.end || py < drawn.top || py > drawn.bottom) return null;
+        const [u, v] = [(px - drawn.left) / (drawn.end - drawn.left), (drawn.bottom - py) / drawn.high];
+        return {
+          px, py, a: snap(data.x, data.x.low + u * (data.x.high - data.x.low)), b: snap(data.y, data.y.low + v * (data.y.high - data.y.low)),
+          value: between(data.values, u * (data.x.at.length - 1), v * (data.y.at.length - 1)),
+        };
+      };
+      svg.addEventListener('click', (event) => {
+        const found = spot(event);
+        if (found) tell('set', {[data.x.key]: found.a, [data.y.key]: found.b});
+      });
+      svg.addEventListener('pointermove', (event) => {
+        const found = spot(event);
+        readout.hidden = !found;
+        svg.style.cursor = found ? 'crosshair' : '';
+        if (!found) return;
+        readout.textContent = `${words(found.a, 4)} ${data.x.unit}, ${words(found.b, 4)} ${data.y.unit}: `
+          + (found.value === null ? 'no complete run' : `${words(found.value)} ${data.figure.unit}`);
+        readout.style.top = `${Math.max(found.py - 30, 0)}px`;
+        readout.style.left = `${Math.min(Math.max(found.px, 110), drawn.size[0] - 110)}px`;
+      });
+      svg.addEventListener('pointerleave', () => readout.hidden = true);
+      body.replaceChildren(svg, ...lists, readout);
+      return {mark: drawn.mark};
+    },
+    picture: (data) => figureMap(data, 760, 600, LIGHT, RAMP.light).svg,
+    table: ({x, y, values, figure}) => [
+      [`${x.label} [${x.unit}]`, `${y.label} [${y.unit}]`, `${figure.label} [${figure.unit}]`],
+      ...values.flatMap((row, j) => row.map((value, i) => [x.at[i], y.at[j], value])),
+    ],
+  };
+
   // ── The tab ──
   const save = (name, type, content) => {
     const link = html('a', {download: name, href: URL.createObjectURL(new Blob([content], {type}))});

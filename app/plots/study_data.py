@@ -13,6 +13,7 @@ from app.format.parameters import shown_number
 from model.analysis.figures import FIGURE, LOAD_PEAK
 from model.config.config import Config
 from model.study.design import Range
+from model.study.figure_map import FigureMap
 from model.study.profiler import LEVELS, Curve, Profile, decisive, effects, range_text
 
 Data = dict[str, Any]
@@ -76,6 +77,25 @@ def profile_data(
             for curve in profile.curves
         ],
     }
+
+
+def map_data(of: FigureMap, loads: LoadUnit) -> Data:
+    """A map; a list of numbers for each row."""
+    figure = FigureUnit(of.figure, loads)
+    x, y = axis_data(of.base, of.x), axis_data(of.base, of.y)
+    return {
+        "done": of.done,
+        "figure": figure.data,
+        "x": x | {"at": _numbers(of.columns * of.base.parameter(of.x.key).shown_factor)},
+        "y": y | {"at": _numbers(of.rows * of.base.parameter(of.y.key).shown_factor)},
+        "values": [_numbers(row * figure.factor) for row in of.values],
+    }
+
+
+def map_command(of: FigureMap, source: Source) -> str:
+    """The command line that repeats it."""
+    vary = [option for axis in (of.x, of.y) for option in ("--vary", range_text(axis, of.level))]
+    return source.command("sweep", *vary, "--figures", of.figure, "--out", "map.csv")
 
 
 def axis_data(config: Config, axis: Range) -> Data:

@@ -14,13 +14,15 @@ from time import perf_counter
 
 from app.format.command_line import Source
 from app.format.load_unit import load_unit
-from app.plots.study_data import Data, profile_commands, profile_data
-from app.runs.study_choice import PROFILER, WHAT_IF, StudyChoice, figures_of, keys_of
+from app.plots.study_data import Data, map_command, map_data, profile_commands, profile_data
+from app.runs.study_choice import COLUMNS, MAP, PROFILER, WHAT_IF, StudyChoice, figures_of, keys_of
 from app.runs.turns import COMPUTING, STUDYING
 from app.session.background import BackgroundJob
 from model.config.config import Config
+from model.config.parameters import Value
 from model.dynamics.vehicle import build_system
 from model.simulation.batch import in_order
+from model.study.figure_map import figure_maps
 from model.study.profiler import LEVELS, Found, Profile, axis_of, profiles
 from model.study.running import Evaluate, Job, Outcome, outcome
 
@@ -71,6 +73,8 @@ class Studies:
         self._since = 0.0  # … and since when, monotonic s
         self._studied: tuple[object, ...] | None = None  # what the last study is, or was, about
         self._ended = True  # it came to its end
+        self._mapped: tuple[object, ...] = ()  # what the last map is of …
+        self._map_known: dict[tuple[Value, Value], Outcome] = {}  # … and its outcomes
         self.choice = StudyChoice()
 
     def tick(self, now: float, situation: Situation) -> None:
@@ -129,8 +133,11 @@ class Studies:
     def _work(self, situation: Situation, choice: StudyChoice, evaluate: Evaluate) -> Work:
         """What is to be shown, one after the other."""
         assert situation.config is not None
-        profiler = situation.front and choice.view == PROFILER
-        yield from self._profile(situation.config, situation.baseline, choice, profiler, evaluate)
+        base, baseline, view = situation.config, situation.baseline, choice.view if situation.front else ""
+        if view == PROFILER or choice.strips:
+            yield from self._profile(base, baseline, choice, view == PROFILER, evaluate)
+        if view == MAP:
+            yield from self._map(base, choice, evaluate)
 
     def _profile(
         self,
@@ -164,6 +171,20 @@ class Studies:
             return
         for other in profiles(baseline, axes, figures, evaluate, self._found):
             yield told(latest, other)
+
+    def _map(self, base: Config, choice: StudyChoice, evaluate: Evaluate) -> Work:
+        """The map; the one that was shown last is kept while only its own two parameters change."""
+        keys = keys_of((choice.x, choice.y, *COLUMNS), base)[:2]
+        (figure,) = figures_of([choice.of], base)
+        x, y = (axis_of(base, key) for key in keys)
+        assert x is not None
+        assert y is not None
+        about = (base.replace({x.key: x.low, y.key: y.low}), x, y, figure)
+        if about != self._mapped:
+            self._mapped, self._map_known = about, {}
+        source, loads = Source(base, self._presets), load_unit(build_system(base))
+        for of in figure_maps(base, x, y, figure, evaluate, self._map_known):
+            yield MAP, map_data(of, loads) | {"commands": [map_command(of, source)], "note": source.note}
 
     def _evaluate(self, given_up: Callable[[], bool], jobs: list[Job]) -> list[Outcome]:
         """What jobs come to, with room for all who hurry. Raises GivenUpError."""
