@@ -36,8 +36,8 @@ if (!window.trackrideStudy) {
   // ── Numbers ──
   const words = (value, digits = 3) => {
     if (value === null || value === undefined || !Number.isFinite(value)) return '–';
-    const size = Math.abs(value);
-    const text = size >= 10 ** digits || size === 0 ? value.toFixed(0) : String(Number(value.toPrecision(digits)));
+    const size = Math.abs(value) < 1e-3 ? 0 : Math.abs(value);
+    const text = size >= 10 ** digits || size === 0 ? (value.toFixed(0) - 0).toFixed(0) : String(Number(value.toPrecision(digits)));
     return text.replace('-', '−');
   };
   const ticks = (low, high, most) => {  // round numbers, `most` or fewer
@@ -181,6 +181,9 @@ if (!window.trackrideStudy) {
           d: path(column.baseline.x, column.baseline.y[row.k], x, y), fill: 'none', stroke: colours.line, 'stroke-width': 1.3,
           'stroke-dasharray': '4 3', opacity: 0.6,
         }));
+        if (row.bound !== null && row.bound < most) inside.append(make('path', {
+          d: `M${start} ${y(row.bound).toFixed(1)}H${end}`, stroke: colours.ink, 'stroke-dasharray': '6 3', fill: 'none', opacity: 0.55,
+        }));
         if (row.now !== null) inside.append(make('path', {
           d: `M${start} ${y(row.now).toFixed(1)}H${end}`, stroke: colours.now, 'stroke-dasharray': '1 3', fill: 'none',
         }));
@@ -265,7 +268,10 @@ if (!window.trackrideStudy) {
       let held = null;
       const steer = (event) => {
         const value = snap(held.column, valueAt(held, place(event)[0]));
-        if (value !== held.told) tell('set', {[held.column.key]: held.told = value});
+        if (value === held.told) return;
+        tell('set', {[held.column.key]: held.told = value});
+        held.column.now = value;
+        drawn.mark();
       };
       svg.addEventListener('pointerdown', (event) => {
         held = event.button ? null : panelAt(place(event));
@@ -387,6 +393,10 @@ if (!window.trackrideStudy) {
       d: contour(values, level, i, j), fill: 'none', stroke: part(level) > 0.5 === (ramp === RAMP.light) ? '#ffffffc0' : '#000000a0',
       'stroke-width': 1,
     })));
+    const {bound} = figure;
+    if (bound !== null && bound > least && bound < most) svg.append(make('path', {
+      d: contour(values, bound, i, j), fill: 'none', stroke: colours.now, 'stroke-width': 2.2,
+    }), text(end, 15, `line: ${words(bound)} ${figure.unit}`, {fill: colours.now, anchor: 'end'}));
     ticks(across.low, across.high, (end - left) / 50).forEach((tick) => svg.append(
       make('path', {d: `M${x(tick).toFixed(1)} ${bottom}v4`, stroke: colours.frame}),
       text(x(tick), bottom + 15, words(tick, 4), {fill: colours.dim, size: 10, anchor: 'middle'})));
@@ -443,7 +453,10 @@ if (!window.trackrideStudy) {
       };
       svg.addEventListener('click', (event) => {
         const found = spot(event);
-        if (found) tell('set', {[data.x.key]: found.a, [data.y.key]: found.b});
+        if (!found) return;
+        tell('set', {[data.x.key]: found.a, [data.y.key]: found.b});
+        [data.x.now, data.y.now] = [found.a, found.b];
+        drawn.mark();
       });
       svg.addEventListener('pointermove', (event) => {
         const found = spot(event);
@@ -464,6 +477,78 @@ if (!window.trackrideStudy) {
       [`${x.label} [${x.unit}]`, `${y.label} [${y.unit}]`, `${figure.label} [${figure.unit}]`],
       ...values.flatMap((row, j) => row.map((value, i) => [x.at[i], y.at[j], value])),
     ],
+  };
+
+  // ── Limits ──
+  const limitPanels = (data, width, height, colours) => {
+    const beside = width > 700, right = 14, left = 40, gap = 56, head = 24, foot = 40;
+    const wide = beside ? (width - left - right - gap) / 2 : width - left - right;
+    const high = Math.max(Math.min(beside ? height - head - foot : (height - 10) / 2 - head - foot, 0.9 * wide), 120);
+    const total = (head + high + foot) * (beside ? 1 : 2);
+    const svg = make('svg', {
+      viewBox: `0 0 ${width} ${total}`, width, height: total, xmlns: 'http://www.w3.org/2000/svg', role: 'img',
+      'aria-label': 'Ride-limited and shock-limited speeds',
+    });
+    const spots = [];
+    [['ride', 'Absorbed power reaches 6 W, km/h', 'rms of the heights, mm', true],
+      ['shock', 'Shock reaches 2.5 g, km/h', 'height of the half-round, mm', false]].forEach(([name, title, axis, powers], k) => {
+      const start = left + (beside ? k * (wide + gap) : 0), end = start + wide;
+      const top = head + (beside ? 0 : k * (head + high + foot)), bottom = top + high;
+      const sizes = [...data.own[name], ...data.baseline[name]].map(({size}) => size);
+      const turn = powers ? Math.log10 : (value) => value;
+      const low = powers ? Math.min(2, ...sizes) * 0.85 : 0, far = Math.max(powers ? 100 : 400, ...sizes) * 1.06;
+      const place = scale(start, end, turn(low), turn(far)), x = (size) => place(turn(size)), y = scale(bottom, top, 0, data.fastest * 1.06);
+      svg.append(text(start, top - 8, title, {fill: colours.ink, weight: 600, size: 11.5}),
+        make('rect', {x: start, y: top, width: wide, height: high, fill: 'none', stroke: colours.frame}));
+      ticks(0, data.fastest, high / 36).forEach((tick) => svg.append(
+        make('path', {d: `M${start} ${y(tick).toFixed(1)}H${end}`, stroke: colours.grid}),
+        text(start - 6, y(tick) + 3.5, words(tick), {fill: colours.dim, anchor: 'end', size: 10})));
+      (powers ? [2, 5, 10, 20, 50, 100, 200].filter((tick) => tick > low && tick < far) : ticks(0, far, wide / 60)).forEach((tick) => svg.append(
+        make('path', {d: `M${x(tick).toFixed(1)} ${top}V${bottom}`, stroke: colours.grid}),
+        text(x(tick), bottom + 14, words(tick), {fill: colours.dim, anchor: 'middle', size: 10})));
+      svg.append(text((start + end) / 2, bottom + 31, axis, {fill: colours.ink, anchor: 'middle', weight: 500}));
+      [['baseline', {opacity: 0.6, 'stroke-dasharray': '4 3', 'stroke-width': 1.3}], ['own', {'stroke-width': 1.8}]].forEach(([whose, style]) => {
+        const points = data[whose][name].filter(({size}) => size > 0), at_ = points.map(({size}) => size);
+        svg.append(make('path', {
+          d: area(at_, points.map(({low: one}) => one), points.map(({high: one}) => one), x, y), fill: colours.line,
+          opacity: whose === 'own' ? 0.18 : 0.08,
+        }), make('path', {d: path(at_, points.map(({speed}) => speed), x, y), fill: 'none', stroke: colours.line, ...style}));
+        if (whose === 'own') points.filter(({speed}) => speed !== null).forEach((point) => {
+          const [px, py] = [x(point.size).toFixed(1), y(point.speed).toFixed(1)];
+          svg.append(point.never ? make('path', {d: `M${px} ${py - 5}l4.5 8h-9Z`, fill: colours.line})
+            : make('circle', {cx: px, cy: py, r: 3, fill: point.again ? colours.back : colours.line, stroke: colours.line, 'stroke-width': 1.4}));
+          spots.push({...point, x: Number(px), y: Number(py), axis: powers ? 'rms' : ''});
+        });
+      });
+    });
+    return {svg, spots, size: [width, total]};
+  };
+  study.views.limits = {
+    empty: 'The fastest speeds come when you rest; all of them take half a minute.',
+    draw(body, data, width, height) {
+      const drawn = limitPanels(data, width, height - 40, look()), {svg, spots} = drawn;
+      const readout = html('div', {className: 'readout', hidden: true});
+      const note = html('p', {textContent: (data.done ? '' : `${Math.round(100 * data.part)} % of the grounds. `)
+        + 'Triangles: never over the bound up to the highest speed tried. Rings: beyond it there is a speed that is below the bound again. '
+        + 'Band: random roads of several seeds.'});
+      svg.addEventListener('pointermove', (event) => {
+        const box = svg.getBoundingClientRect(), zoom = box.width / drawn.size[0];
+        const [px, py] = [(event.clientX - box.left) / zoom, (event.clientY - box.top) / zoom];
+        const near = spots.reduce((best, one) => Math.hypot(one.x - px, one.y - py) < Math.hypot(best.x - px, best.y - py) ? one : best, {x: -99, y: -99});
+        readout.hidden = Math.hypot(near.x - px, near.y - py) > 16;
+        if (readout.hidden) return;
+        readout.textContent = `${near.name}${near.axis ? `, ${words(near.size)} mm rms` : ''}: ${near.never ? 'over ' : ''}${words(near.speed)} km/h`;
+        readout.style.top = `${Math.max(near.y - 30, 0)}px`;
+        readout.style.left = `${Math.min(Math.max(near.x, 120), drawn.size[0] - 120)}px`;
+      });
+      svg.addEventListener('pointerleave', () => readout.hidden = true);
+      body.replaceChildren(svg, note, readout);
+    },
+    picture: (data) => limitPanels(data, 1000, 460, LIGHT).svg,
+    table: (data) => [['vehicle', 'limit', 'ground', 'size [mm]', 'speed [km/h]', 'slowest', 'fastest', 'note'],
+      ...['own', 'baseline'].flatMap((whose) => ['ride', 'shock'].flatMap((name) => data[whose][name].map((one) =>
+        [whose === 'own' ? 'now' : whose, name, one.name, one.size, one.speed, one.low, one.high,
+          one.never ? 'never over the bound' : one.why || (one.again ? 'below the bound again beyond' : '')])))],
   };
 
   // ── The tab ──

@@ -10,13 +10,16 @@ import numpy as np
 from app.format.command_line import Source
 from app.format.load_unit import KILONEWTON, LoadUnit
 from app.format.parameters import shown_number
-from model.analysis.figures import FIGURE, LOAD_PEAK
+from model.analysis.comfort import POWER_LIMIT
+from model.analysis.figures import FIGURE, LOAD_PEAK, POWER, SHOCK
 from model.config.config import Config
 from model.study.design import Range
 from model.study.figure_map import FigureMap
+from model.study.limits import NEVER, SHOCK_BOUND, SPEEDS, Limit
 from model.study.profiler import LEVELS, Curve, Profile, decisive, effects, range_text
 
 Data = dict[str, Any]
+BOUNDS = {POWER.name: POWER_LIMIT, SHOCK.name: SHOCK_BOUND}  # of practice, which the page marks
 DIGITS = 6  # of numbers that are drawn
 
 
@@ -34,7 +37,8 @@ class FigureUnit:
 
     @property
     def data(self) -> Data:
-        return {"name": self.name, "label": self.label, "unit": self.unit}
+        bound = BOUNDS.get(self.name)
+        return {"name": self.name, "label": self.label, "unit": self.unit, "bound": bound}
 
 
 def profile_data(
@@ -96,6 +100,41 @@ def map_command(of: FigureMap, source: Source) -> str:
     """The command line that repeats it."""
     vary = [option for axis in (of.x, of.y) for option in ("--vary", range_text(axis, of.level))]
     return source.command("sweep", *vary, "--figures", of.figure, "--out", "map.csv")
+
+
+def limits_data(own: Sequence[Limit], baseline: Sequence[Limit], part: float) -> Data:
+    """Fastest speeds over rough ground and half-rounds; part: of the grounds that are done, 0…1."""
+    return {
+        "done": part >= 1,
+        "part": _number(part),
+        "fastest": SPEEDS[-1],
+        "own": {name: _limits_of(own, shock) for name, shock in (("ride", False), ("shock", True))},
+        "baseline": {name: _limits_of(baseline, shock) for name, shock in (("ride", False), ("shock", True))},
+    }
+
+
+def _limits_of(found: Sequence[Limit], shock: bool) -> list[Data]:
+    """By size of the ground, rising: median of all seeds, slowest and fastest, and what is to be said of them."""
+    by_name: dict[str, list[Limit]] = {}
+    for limit in found:
+        if (limit.figure == SHOCK.name) is shock:
+            by_name.setdefault(limit.ground.name, []).append(limit)
+    told = []
+    for name, group in by_name.items():
+        speeds = [limit.drawn for limit in group if limit.drawn is not None]
+        told.append(
+            {
+                "name": name,
+                "size": _number(1e3 * float(np.median([limit.ground.size for limit in group]))),
+                "speed": _number(float(np.median(speeds))) if speeds else None,
+                "low": _number(min(speeds)) if speeds else None,
+                "high": _number(max(speeds)) if speeds else None,
+                "never": all(limit.why == NEVER for limit in group),
+                "again": any(limit.down_again is not None for limit in group),
+                "why": "" if speeds else group[0].why,
+            }
+        )
+    return sorted(told, key=lambda one: one["size"])
 
 
 def axis_data(config: Config, axis: Range) -> Data:

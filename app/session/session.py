@@ -25,7 +25,8 @@ from app.runs.runner import Runner
 from app.runs.study_choice import StudyChoice
 from app.runs.turns import SHOWING
 from app.session.error_log import Seldom, kind_of
-from app.session.studies import Situation, Studies
+from app.session.studies import Studies
+from app.session.study_work import Situation
 from app.session.transfers import Download, Transfers
 from app.session.window import VehicleView, Window
 from app.session.workspace import Workspace

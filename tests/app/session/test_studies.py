@@ -12,7 +12,8 @@ import pytest
 from app.plots.study_data import Data
 from app.runs.study_choice import StudyChoice
 from app.runs.turns import COMPUTING
-from app.session.studies import REST, Situation, Studies
+from app.session.studies import REST, Studies
+from app.session.study_work import Situation
 from model.config.config import load_config
 from model.study.profiler import LEVELS
 from model.study.running import COMPLETE, Outcome
