@@ -490,7 +490,7 @@ if (!window.trackrideStudy) {
       'aria-label': 'Ride-limited and shock-limited speeds',
     });
     const spots = [];
-    [['ride', 'Absorbed power reaches 6 W, km/h', 'rms of the heights, mm', true],
+    [['ride', 'Absorbed power reaches 6 W, km/h', 'rms of the heights, mm, with the classes of ISO 8608', true],
       ['shock', 'Shock reaches 2.5 g, km/h', 'height of the half-round, mm', false]].forEach(([name, title, axis, powers], k) => {
       const start = left + (beside ? k * (wide + gap) : 0), end = start + wide;
       const top = head + (beside ? 0 : k * (head + high + foot)), bottom = top + high;
@@ -507,6 +507,8 @@ if (!window.trackrideStudy) {
         make('path', {d: `M${x(tick).toFixed(1)} ${top}V${bottom}`, stroke: colours.grid}),
         text(x(tick), bottom + 14, words(tick), {fill: colours.dim, anchor: 'middle', size: 10})));
       svg.append(text((start + end) / 2, bottom + 31, axis, {fill: colours.ink, anchor: 'middle', weight: 500}));
+      if (powers) data.own.ride.filter(({name: one}) => /^class .$/.test(one)).forEach(({name: one, size}) => svg.append(
+        text(x(size), bottom - 6, one.slice(-1), {fill: colours.dim, anchor: 'middle', weight: 600})));
       [['baseline', {opacity: 0.6, 'stroke-dasharray': '4 3', 'stroke-width': 1.3}], ['own', {'stroke-width': 1.8}]].forEach(([whose, style]) => {
         const points = data[whose][name].filter(({size}) => size > 0), at_ = points.map(({size}) => size);
         svg.append(make('path', {
@@ -549,6 +551,93 @@ if (!window.trackrideStudy) {
       ...['own', 'baseline'].flatMap((whose) => ['ride', 'shock'].flatMap((name) => data[whose][name].map((one) =>
         [whose === 'own' ? 'now' : whose, name, one.name, one.size, one.speed, one.low, one.high,
           one.never ? 'never over the bound' : one.why || (one.again ? 'below the bound again beyond' : '')])))],
+  };
+
+  // ── Measured ──
+  const NAMES = ['measured', 'simulated', 'fitted'];
+  const measuredPanels = (data, width, height, colours) => {
+    const left = 44, right = 12, head = 26, foot = 36, end = width - right;
+    const high = Math.max((height - 2 * (head + foot)) / 2, 100), total = 2 * (head + high + foot);
+    const inks = [colours.ink, colours.line, colours.now];
+    const svg = make('svg', {viewBox: `0 0 ${width} ${total}`, width, height: total, xmlns: 'http://www.w3.org/2000/svg', role: 'img',
+      'aria-label': `Measured and simulated acceleration, ${words(data.rms)} m/s² rms apart`});
+    const span = (lists) => {
+      const all = lists.flat().filter((value) => value !== null);
+      return [Math.min(...all), Math.max(...all)];
+    };
+    const frame = (top, title, axis, [from, to], [low, high_]) => {
+      const x = scale(left, end, from, to), y = scale(top + high, top, low, high_);
+      svg.append(text(left, top - 9, title, {fill: colours.ink, weight: 600, size: 11.5}),
+        make('rect', {x: left, y: top, width: end - left, height: high, fill: 'none', stroke: colours.frame}));
+      ticks(low, high_, high / 32).forEach((tick) => svg.append(
+        make('path', {d: `M${left} ${y(tick).toFixed(1)}H${end}`, stroke: colours.grid}),
+        text(left - 6, y(tick) + 3.5, words(tick), {fill: colours.dim, anchor: 'end', size: 10})));
+      ticks(from, to, (end - left) / 55).forEach((tick) => svg.append(
+        make('path', {d: `M${x(tick).toFixed(1)} ${top + high}v4`, stroke: colours.frame}),
+        text(x(tick), top + high + 15, words(tick, 4), {fill: colours.dim, anchor: 'middle', size: 10})));
+      svg.append(text((left + end) / 2, top + high + 29, axis, {fill: colours.dim, anchor: 'middle'}));
+      return [x, y];
+    };
+    const draw_ = ([x, y], lists) => lists.forEach(([xs, ys], k) => svg.append(make('path', {
+      d: path(xs, ys, x, y), fill: 'none', stroke: inks[k], 'stroke-width': k === 0 ? 1.2 : 1.5, opacity: k === 0 ? 0.7 : 1,
+      'stroke-linejoin': 'round',
+    })));
+    const [low, most] = span(data.curves), pad = 0.05 * (most - low || 1);
+    draw_(frame(head, 'Vertical acceleration, m/s²', 'Time, s', [data.t[0], data.t.at(-1)], [low - pad, most + pad]),
+      data.curves.map((ys) => [data.t, ys]));
+    const top = 2 * head + high + foot, [, tallest] = span(data.spectra.map(({y}) => y));
+    draw_(frame(top, 'Its spectrum, m/s² rms in each band', 'Frequency, Hz', [0, Math.max(...data.spectra.map(({x}) => x.at(-1)))], [0, 1.05 * tallest || 1]),
+      data.spectra.map(({x, y}) => [x, y]));
+    let place = end;
+    data.curves.map((_, k) => k).reverse().forEach((k) => {
+      svg.append(text(place, head - 9, NAMES[k], {fill: inks[k], anchor: 'end', weight: 600}));
+      place -= widthOf(NAMES[k], 10.5, 600) + 12;
+    });
+    return {svg};
+  };
+  const upload = () => {
+    const input = html('input', {type: 'file', accept: '.csv,.txt,.tsv', hidden: true});
+    input.onchange = async () => {
+      const [file] = input.files;
+      if (file && file.size < 2e7) tell('record', {name: file.name, text: await file.text()});
+    };
+    return [input, button('Open a record…', 'A CSV file of time and vertical acceleration', () => input.click())];
+  };
+  const PASSES = [['', 'all frequencies'], ...[10, 20, 30, 50].map((hz) => [String(hz), `up to ${hz} Hz`])];
+  study.views.measured = {
+    always: true,
+    empty: 'A record is a CSV file with a heading such as: t [s],a [m/s^2]. It is laid over the run that is shown, and '
+      + 'parameters of your choice can be fitted to it.',
+    draw(body, data, width, height) {
+      if (!data.t) return void body.replaceChildren(html('p', {textContent: `${data.name}: ${data.said}.`}));
+      const {fit, keys} = data, {fitted, low_pass} = study.choice;
+      const {svg} = measuredPanels(data, width, height - (fit ? 130 : 80), look());
+      const pass = html('select', {ariaLabel: 'Frequencies compared'}, ...options(PASSES, String(low_pass ?? '')));
+      pass.onchange = () => choose({low_pass: pass.value ? Number(pass.value) : null});
+      const chips = fitted.map((key) => button(`${keys.find(([one]) => one === key)?.[1] ?? key} ✕`, 'Do not fit this one',
+        () => choose({fitted: fitted.filter((one) => one !== key)})));
+      const add = html('select', {ariaLabel: 'Fit a parameter'}, html('option', {value: '', textContent: '+ parameter'}), ...options(keys));
+      add.onchange = () => add.value && !fitted.includes(add.value) && choose({fitted: [...fitted, add.value].slice(-4)});
+      const go = button('Fit', 'Find the values that come nearest to the record', () => choose({fit: study.choice.fit + 1}));
+      go.disabled = !fitted.length || Boolean(data.busy);
+      go.className = 'main';
+      const line = html('p', {className: 'line'}, html('b', {textContent: `${words(data.rms)} m/s²`}),
+        ` rms apart · the run begins at ${words(data.lag)} s of the record · offset ${words(data.offset)} m/s²`);
+      const tools = html('div', {className: 'tools row'}, pass, ...chips, add, go, html('span', {textContent: data.busy || data.said}));
+      const parts = [line, svg, tools];
+      if (fit) parts.push(html('p', {className: 'line'},
+        `Fitted: ${words(fit.rms)} m/s² rms apart. `, ...fit.rows.map((row) => html('span', {},
+          `${row.label} `, html('b', {textContent: `${words(row.value, 4)} ${row.unit}`}),
+          ` (${words(row.low)} … ${words(row.high)}${row.end ? ', at the end of its range' : ''}) `)),
+        button('Apply', 'Give the parameters these values', () =>
+          tell('set', Object.fromEntries(fit.rows.map((row) => [row.key, row.value])))),
+      ));
+      body.replaceChildren(...parts);
+    },
+    more: upload,
+    picture: (data) => measuredPanels(data, 900, 620, LIGHT).svg,
+    table: (data) => [['t [s]', ...data.curves.map((_, k) => `${NAMES[k]} [m/s^2]`)],
+      ...data.t.map((time, k) => [time, ...data.curves.map((ys) => ys[k])])],
   };
 
   // ── The tab ──
@@ -610,8 +699,8 @@ if (!window.trackrideStudy) {
     const head = html('div', {className: 'head'},
       html('div', {className: 'views'}, ...Object.entries(VIEWS).filter(([one]) => study.views[one]).map(([one, label]) =>
         button(label, '', () => choose({view: one}), one === name))),
-      html('div', {className: 'tools'}, ...(data ? (view.more?.(data) ?? []) : []),
-        ...(data ? Object.entries(exported).map(([kind, act]) =>
+      html('div', {className: 'tools'}, ...(data || view.always ? (view.more?.(data) ?? []) : []),
+        ...(data && (data.t || name !== 'measured') ? Object.entries(exported).map(([kind, act]) =>
           button(kind, `Save as ${kind}`, () => act(view, data, `trackride-${name}`))) : []),
         button(study.large ? '✕' : '⤢', study.large ? 'Back to the tab (Esc)' : 'Large, over the view', () => enlarge(!study.large))));
     const body = html('div', {className: 'body'});
@@ -696,7 +785,7 @@ if (!window.trackrideStudy) {
       study.offer = JSON.parse(this.dataset.offer);
       let kept = {};
       try { kept = JSON.parse(localStorage.getItem(KEPT)) ?? {}; } catch { /* not ours */ }
-      study.choice = {...study.offer.choice, ...kept};
+      study.choice = {...study.offer.choice, ...kept, fit: 0};
       if (!study.views[study.choice.view]) study.choice.view = 'profiler';
       const hide = () => {
         const box = sayBox();

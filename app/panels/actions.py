@@ -136,6 +136,9 @@ class Actions(Protocol):
     def choose_study(self, choice: StudyChoice) -> None:
         """Show this in the tab "Study" and on the sliders."""
 
+    def take_record(self, name: str, text: str) -> None:
+        """Compare runs with a measured acceleration: the text of a CSV file."""
+
     def steer(self, key: str, value: Any) -> None:
         """Give a parameter another value, as in a file, and let its control follow: the user moves it elsewhere."""
 

@@ -60,6 +60,8 @@ class StudyPanel:
             return  # a page that is being built, or anybody
         if kind == "choice":
             self._actions.choose_study(choice_from(json.dumps(content)))
+        elif kind == "record" and isinstance(content, dict):
+            self._actions.take_record(str(content.get("name"))[:80], str(content.get("text")))
         elif kind == "set" and isinstance(content, dict):
             for key, shown in content.items():
                 if key in VARIABLE and isinstance(shown, int | float):

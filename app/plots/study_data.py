@@ -10,16 +10,20 @@ import numpy as np
 from app.format.command_line import Source
 from app.format.load_unit import KILONEWTON, LoadUnit
 from app.format.parameters import shown_number
+from app.plots.thinning import thin
 from model.analysis.comfort import POWER_LIMIT
 from model.analysis.figures import FIGURE, LOAD_PEAK, POWER, SHOCK
 from model.config.config import Config
 from model.study.design import Range
 from model.study.figure_map import FigureMap
+from model.study.fit import Fit, Overlay
 from model.study.limits import NEVER, SHOCK_BOUND, SPEEDS, Limit
 from model.study.profiler import LEVELS, Curve, Profile, decisive, effects, range_text
 
 Data = dict[str, Any]
 BOUNDS = {POWER.name: POWER_LIMIT, SHOCK.name: SHOCK_BOUND}  # of practice, which the page marks
+SHARE = 4  # spectra are means over stretches of a fourth of a record …
+HIGHEST = 30.0  # Hz … and go so far
 DIGITS = 6  # of numbers that are drawn
 
 
@@ -111,6 +115,60 @@ def limits_data(own: Sequence[Limit], baseline: Sequence[Limit], part: float) ->
         "own": {name: _limits_of(own, shock) for name, shock in (("ride", False), ("shock", True))},
         "baseline": {name: _limits_of(baseline, shock) for name, shock in (("ride", False), ("shock", True))},
     }
+
+
+def measured_data(base: Config, name: str, over: Overlay, found: Fit | None) -> Data:
+    """A run over a record, in time and as spectra, and what a fit has found."""
+    columns = [over.measured, over.simulated]
+    spectra = [_spectrum(over.t, column) for column in columns]
+    if found is not None:
+        columns += [np.interp(over.t, found.t, found.fitted, left=np.nan, right=np.nan)]
+        spectra += [_spectrum(found.t, found.fitted)]
+    t, curves = thin(over.t, np.column_stack(columns))
+    return {
+        "name": name,
+        "rms": _number(over.rms),
+        "lag": _number(over.lag),
+        "offset": _number(over.offset),
+        "t": _numbers(t),
+        "curves": _table(curves),
+        "spectra": [
+            {"x": _numbers(frequency[frequency <= HIGHEST]), "y": _numbers(amplitude[frequency <= HIGHEST])}
+            for frequency, amplitude in spectra
+        ],
+        "fit": None if found is None else _fit_data(base, found),
+    }
+
+
+def _fit_data(base: Config, found: Fit) -> Data:
+    rows = []
+    for key, estimate, at_end in zip(found.keys, found.estimates, found.at_end, strict=True):
+        parameter = base.parameter(key)
+        value, low, high = (
+            _number(number * parameter.shown_factor) for number in (estimate.value, estimate.low, estimate.high)
+        )
+        rows.append(
+            {
+                "key": key,
+                "label": parameter.label,
+                "unit": parameter.shown_unit,
+                "value": value,
+                "low": low,
+                "high": high,
+                "end": at_end,
+            }
+        )
+    before = found.rms_before
+    return {"rows": rows, "rms": _number(found.rms), "before": None if before is None else _number(before)}
+
+
+def _spectrum(t: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies, Hz, and amplitudes, m/s² rms in each band."""
+    from scipy.signal import welch
+
+    rate = (len(t) - 1) / (t[-1] - t[0])
+    frequency, power = welch(values, rate, nperseg=min(max(len(t) // SHARE, 16), len(t)), scaling="spectrum")
+    return frequency, np.sqrt(power)
 
 
 def _limits_of(found: Sequence[Limit], shock: bool) -> list[Data]:

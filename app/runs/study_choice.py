@@ -18,7 +18,7 @@ WHAT_IF = tuple(parameter.key for parameter in PARAMETERS if parameter.what_if)
 DAMPING = "vehicle.road_suspension.damping"
 COLUMNS = tuple(parameter.key for parameter in PARAMETERS if parameter.what_if or parameter.key == DAMPING)
 ROWS = ("absorbed_power", "peak_load", "imaginary_share", "air_time")
-MOST_COLUMNS, MOST_ROWS = 10, 6
+MOST_COLUMNS, MOST_ROWS, MOST_FITTED = 10, 6, 4
 VARIABLE = frozenset(p.key for p in PARAMETERS if p.kind in ("number", "integer") and p.slider_low != p.slider_high)
 
 
@@ -34,6 +34,9 @@ class StudyChoice:
     x: str = "drive.speed_kmh"  # keys of the map …
     y: str = DAMPING
     of: str = "absorbed_power"  # … and its figure
+    low_pass: float | None = None  # Hz, above which a record and a run are not compared
+    fitted: tuple[str, ...] = ()  # keys to be fitted to the record …
+    fit: int = 0  # … by the fit with this number; 0: none was asked for
 
 
 def choice_from(text: str) -> StudyChoice:
@@ -55,6 +58,12 @@ def choice_from(text: str) -> StudyChoice:
             told["rows"] = _some(value, None, MOST_ROWS, usual)
         elif field.name == "strips":
             told["strips"] = value if isinstance(value, bool) else usual
+        elif field.name == "fitted":
+            told["fitted"] = _some(value, VARIABLE, MOST_FITTED, usual)
+        elif field.name == "fit":
+            told["fit"] = value if isinstance(value, int) and 0 <= value < 10**6 else usual
+        elif field.name == "low_pass":
+            told["low_pass"] = float(value) if isinstance(value, int | float) and 0.1 <= value <= 1000 else usual
         elif field.name == "view":
             told["view"] = value if value in VIEWS else usual
         elif field.name in ("x", "y"):

@@ -26,7 +26,7 @@ from app.runs.study_choice import StudyChoice
 from app.runs.turns import SHOWING
 from app.session.error_log import Seldom, kind_of
 from app.session.studies import Studies
-from app.session.study_work import Situation
+from app.session.study_work import Record, Situation
 from app.session.transfers import Download, Transfers
 from app.session.window import VehicleView, Window
 from app.session.workspace import Workspace
@@ -35,6 +35,8 @@ from model.config.config import Config
 from model.simulation.simulate import simulate
 from model.simulation.trajectory import Trajectory
 from model.study import running as study_running
+from model.study.design import DesignError
+from model.study.fit import read_record
 
 VIEW_RATE = 30.0  # Hz: the 3-D view
 TEXT_RATE = 10.0  # Hz: numbers, time slider, time cursors …
@@ -88,6 +90,7 @@ class Session:
             raise
         self._workspace = Workspace(self._window, self._runner, self._presets)
         self._transfers = Transfers(client, self, self._window, self._workspace, run)
+        self._record: Record | None = None  # measured, for studies
         self._studies = Studies(
             presets,
             lambda: self._runner.latest.number,
@@ -228,6 +231,15 @@ class Session:
             self._studies.choice = choice
 
         self.post("study", choose)
+
+    def take_record(self, name: str, text: str) -> None:
+        def take() -> None:
+            try:
+                self._record = Record(name, read_record(text))
+            except DesignError as error:
+                self._window.say("No record", f"{name}: {error}.")
+
+        self.post("record", take)
 
     def steer(self, key: str, value: Any) -> None:
         self.change(key, value)
@@ -458,6 +470,7 @@ class Session:
                 config=good.trajectory.config if whole and isinstance(good, Finished) else None,
                 baseline=None if baseline is None else baseline.config,
                 front=self._window.study_in_front,
+                record=self._record,
                 hurries=driving or not self._in_view or self._runner.under_way() is not None,
             ),
         )

@@ -7,16 +7,17 @@ long a pause behind each; in a drive, in a page in the background, and while nob
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
 from time import perf_counter
+from typing import Any
 
 from app.plots.study_data import Data
 from app.runs.study_choice import StudyChoice
 from app.runs.turns import COMPUTING, STUDYING
 from app.session.background import BackgroundJob
-from app.session.study_work import Situation, StudyWork
+from app.session.study_work import Means, Situation, StudyWork
 from model.config.config import Config
 from model.simulation.batch import in_order
 from model.study.running import Job, Outcome, outcome
@@ -93,7 +94,7 @@ class Studies:
         if situation.config is None or not (situation.front or self.choice.strips):
             return None
         shown = self.choice if situation.front else replace(self.choice, view="")
-        return situation.config, situation.baseline, situation.front, shown
+        return situation.config, situation.baseline, situation.front, situation.record, shown
 
     # ── On the thread of the job ──
 
@@ -101,7 +102,9 @@ class Studies:
         assert situation.config is not None
         given_up = lambda: self._job.stopped() or self._newest() != situation.number  # noqa: E731
         try:
-            for kind, data in self._work.of(situation, choice, partial(self._evaluate, given_up)):
+            spread = partial(self._spread, given_up)
+            means = Means(lambda jobs: list(spread(partial(self._one, given_up), jobs)), spread, self._show)
+            for kind, data in self._work.of(situation, choice, means):
                 if given_up():
                     return
                 self._show(kind, data)
@@ -109,22 +112,22 @@ class Studies:
         except GivenUpError:
             pass
 
-    def _evaluate(self, given_up: Callable[[], bool], jobs: list[Job]) -> list[Outcome]:
-        """What jobs come to, with room for all who hurry. Raises GivenUpError."""
-        found: list[Outcome] = []
-        at = 0
-        while at < len(jobs):
+    def _spread(self, given_up: Callable[[], bool], work: Callable[[Any], Any], items: Iterable[Any]) -> list[Any]:
+        """What work makes of each item, with room for all who hurry. Raises GivenUpError."""
+        waiting: list[Any] = list(items)
+        found: list[Any] = []
+        while waiting:
             while COMPUTING.busy and not given_up():
                 self._job.pause(HELD_BACK)
             if given_up():
                 raise GivenUpError
             calm = not self._plays()
             cores = (os.cpu_count() or 1) if calm else 1
-            block = jobs[at : at + (BLOCK * cores if calm else 1)]
+            block = waiting[: BLOCK * cores if calm else 1]
             began = perf_counter()
             with STUDYING.turn():
-                found += in_order(partial(self._one, given_up), block, cores)
-            at += len(block)
+                found += in_order(work, block, cores)
+            del waiting[: len(block)]
             if not calm:
                 self._job.pause(perf_counter() - began)
         return found

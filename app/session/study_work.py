@@ -6,25 +6,65 @@ Nothing here knows when it runs: app/session/studies.py says so, through `evalua
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from app.format.command_line import Source
 from app.format.load_unit import load_unit
-from app.plots.study_data import Data, limits_data, map_command, map_data, profile_commands, profile_data
-from app.runs.study_choice import COLUMNS, LIMITS, MAP, PROFILER, WHAT_IF, StudyChoice, figures_of, keys_of
+from app.plots.study_data import (
+    Data,
+    limits_data,
+    map_command,
+    map_data,
+    measured_data,
+    profile_commands,
+    profile_data,
+)
+from app.runs.study_choice import (
+    COLUMNS,
+    LIMITS,
+    MAP,
+    MEASURED,
+    PROFILER,
+    WHAT_IF,
+    StudyChoice,
+    figures_of,
+    keys_of,
+    variable_keys,
+)
 from model.config.config import Config
 from model.config.parameters import Value
 from model.dynamics.vehicle import build_system
+from model.study.design import DesignError
 from model.study.figure_map import figure_maps
+from model.study.fit import SPREAD, Fit, Signal, fit, laid_over
 from model.study.limits import Limit, course_of, limits
-from model.study.profiler import LEVELS, Found, Profile, axis_of, profiles
-from model.study.running import Evaluate, Outcome
+from model.study.profiler import LEVELS, Found, Profile, axis_of, profiles, span_text
+from model.study.running import Evaluate, Outcome, blocks
 
+FINISH = 10  # steps of least squares that a fit takes, about
+COUNTED = 8  # runs of a fit between two words of how far it has come
 VEHICLES = 12  # whose limits are remembered
 ANY_RUN: dict[str, Value] = {"drive.speed_kmh": 10.0, "simulation.duration": 10.0}  # limits do not depend on these
 
 Work = Iterator[tuple[str, Data]]  # kind of data, one of VIEWS, and the data
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """A measured vertical acceleration."""
+
+    name: str  # of its file
+    signal: Signal
+
+
+class Means(NamedTuple):
+    """How studies are run. Each raises an error of its own where they are given up."""
+
+    evaluate: Evaluate  # figures of jobs
+    spread: Callable[[Callable[..., object], Iterable[object]], Iterable[object]]  # what work makes of each item
+    show: Callable[[str, Data], None]  # what is known meanwhile
 
 
 @dataclass(frozen=True)
@@ -38,6 +78,7 @@ class Situation:
     baseline: Config | None
     front: bool  # the tab "Study" is seen
     hurries: bool  # a drive, a page in the background, or a run under way
+    record: Record | None = None  # that was uploaded
 
 
 class StudyWork:
@@ -49,18 +90,23 @@ class StudyWork:
         self._found = Found()
         self._mapped: tuple[object, ...] = ()  # what the last map is of …
         self._map_known: dict[tuple[Value, Value], Outcome] = {}  # … and its outcomes
+        self._fits = 0  # number of the last fit that was begun
+        self._fit: tuple[tuple[object, ...], Fit] | None = None  # what it is about, and what it found
         self._limited: OrderedDict[Config, dict[tuple[str, str, int], Limit]] = OrderedDict()
 
-    def of(self, situation: Situation, choice: StudyChoice, evaluate: Evaluate) -> Work:
+    def of(self, situation: Situation, choice: StudyChoice, means: Means) -> Work:
         """What is to be shown, one after the other."""
         assert situation.config is not None
         base, baseline, view = situation.config, situation.baseline, choice.view if situation.front else ""
+        evaluate = means.evaluate
         if view == PROFILER or choice.strips:
             yield from self._profile(base, baseline, choice, view == PROFILER, evaluate)
         if view == MAP:
             yield from self._map(base, choice, evaluate)
         if view == LIMITS:
             yield from self._limits(base, baseline, evaluate)
+        if view == MEASURED and situation.record is not None:
+            yield from self._measured(base, situation.record, choice, means)
 
     def _profile(
         self, base: Config, baseline: Config | None, choice: StudyChoice, whole: bool, evaluate: Evaluate
@@ -135,3 +181,45 @@ class StudyWork:
         while len(self._limited) > VEHICLES:
             self._limited.popitem(last=False)
         return found
+
+    def _measured(self, base: Config, record: Record, choice: StudyChoice, means: Means) -> Work:
+        """The run over the record, and the last fit as long as it is about them."""
+        keys = variable_keys(base)
+        labels = [[key, base.parameter(key).label] for key in keys]
+        ranges = [axis for key in choice.fitted if key in keys and (axis := axis_of(base, key)) is not None]
+        about = (base, record, choice.low_pass, choice.fitted)
+        try:
+            over = laid_over(base, record.signal, choice.low_pass)
+        except DesignError as error:
+            yield MEASURED, {"name": record.name, "said": str(error), "fit": None, "busy": ""}
+            return
+
+        def told(busy: str = "", said: str = "") -> Data:
+            found = self._fit[1] if self._fit is not None and self._fit[0] == about else None
+            return measured_data(base, record.name, over, found) | {"busy": busy, "said": said, "keys": labels}
+
+        asked = choice.fit != self._fits and bool(ranges)
+        yield MEASURED, told("Fitting…" if asked else "")
+        if not asked:
+            return
+        self._fits = choice.fit
+        total, done = SPREAD * len(ranges) + FINISH * (len(ranges) + 1), 0
+
+        def counted(work: Callable[..., object], items: Iterable[object]) -> list[object]:
+            nonlocal done
+            found: list[object] = []
+            for block in blocks(items, COUNTED):
+                found += means.spread(work, block)
+                done += len(block)
+                means.show(MEASURED, told(f"Fitting… {min(100 * done // total, 99)} %"))
+            return found
+
+        try:
+            self._fit = about, fit(base, record.signal, ranges, choice.low_pass, spread=counted)
+        except DesignError as error:
+            yield MEASURED, told(said=str(error))
+        else:
+            command = Source(base, self._presets).command(
+                "fit", "--measured", record.name, *(f"--over={span_text(axis)}" for axis in ranges), "--out", "fit"
+            )
+            yield MEASURED, told() | {"commands": [command], "note": ""}

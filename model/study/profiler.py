@@ -169,8 +169,12 @@ def decisive(found: Sequence[Effect]) -> tuple[Effect, ...]:
 
 def range_text(axis: Range, count: int) -> str:
     """A range as commands take it: "drive.speed_kmh=2:70:25"; fewer values where only whole ones are allowed."""
-    count = len(steps(axis, count))
-    return f"{axis.key}={number_text(axis.low)}:{number_text(axis.high)}:{count}"
+    return f"{span_text(axis)}:{len(steps(axis, count))}"
+
+
+def span_text(axis: Range) -> str:
+    """Its ends only: "drive.speed_kmh=2:70"."""
+    return f"{axis.key}={number_text(axis.low)}:{number_text(axis.high)}"
 
 
 def _wanted(base: Config, axis: Range, level: int) -> list[Value]:
