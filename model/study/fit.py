@@ -168,6 +168,40 @@ def fit(
     return fit_runs(runs, record, over, low_pass, seed)
 
 
+@dataclass(frozen=True, eq=False)
+class Overlay:
+    """A run laid over a record as well as may be: simulated(t − lag) + offset beside measured(t)."""
+
+    t: np.ndarray  # (N,) s, of the record, where both are known
+    measured: np.ndarray  # (N,) m/s²
+    simulated: np.ndarray  # (N,) m/s², with offset
+    lag: float  # s
+    offset: float  # m/s²
+
+    @property
+    def rms(self) -> float:
+        """m/s², of what is left."""
+        return float(np.sqrt(np.mean((self.simulated - self.measured) ** 2)))
+
+
+def laid_over(base: Config, record: Signal, low_pass: float | None = None, at: Point = CENTRE_OF_MASS) -> Overlay:
+    """A configuration's run over a record; low_pass and at as for `fit`. Raises DesignError where that cannot be."""
+    signal = _measured(base, at, {})
+    if signal is None:
+        raise DesignError("the run did not come to its end")
+    t, a = _filtered(record, low_pass)
+    signal = _filtered(signal, low_pass)
+    guess = _Problem(lambda _: [], (t, a), (), low_pass).guess(signal)
+    if guess is None:
+        raise DesignError("run and record last too differently; let the run last about as long")
+    lag = guess[1]
+    within = (t - lag >= signal[0][0]) & (t - lag <= signal[0][-1])
+    t, a = t[within], a[within]
+    simulated = np.interp(t - lag, *signal)
+    offset = float(np.mean(a - simulated))
+    return Overlay(t, a, simulated + offset, lag, offset)
+
+
 def _measured(base: Config, at: Point, changes: Mapping[str, Value]) -> Signal | None:
     """What a sensor in the hull measures in a run."""
     try:

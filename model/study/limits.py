@@ -134,6 +134,15 @@ def half_round_grounds(base: Config) -> list[Ground]:
     return grounds
 
 
+def course_of(base: Config, seeds: Sequence[int] = (1, 2, 3)) -> list[list[Ground]]:
+    """Random roads and half-rounds in the order in which they tell most: all with the first seed, then other seeds."""
+    first, *others = (iso_grounds(base, [seed]) for seed in seeds)
+    rounds = half_round_grounds(base)
+    coarse = [*rounds[1::3], *(ground for ground in first if ground.changes["road.type"] == "random")]
+    fine = [ground for ground in (*rounds, *first) if ground not in coarse]
+    return [[*coarse, *fine], *others]
+
+
 def limits(vehicles: Sequence[tuple[Config, Sequence[Ground]]], evaluate: Evaluate = at_once) -> list[Limit]:
     """The limit of each vehicle on each of its grounds."""
     cases = [

@@ -83,11 +83,12 @@ def outcome(
     changes: Mapping[str, Value],
     figures: tuple[str, ...],
     keep: Callable[[Trajectory], None] | None = None,
+    should_stop: Callable[[], bool] | None = None,
 ) -> Outcome:
-    """What a configuration with changes comes to; keep: gets the run."""
+    """What a configuration with changes comes to; keep: gets the run; should_stop: as for `simulate`."""
     nothing = (None,) * len(figures)
     try:
-        trajectory = simulate(base.replace(changes))
+        trajectory = simulate(base.replace(changes), should_stop=should_stop)
         if keep is not None:
             keep(trajectory)
         if not trajectory.complete:
