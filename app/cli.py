@@ -225,9 +225,9 @@ def paper(
 
 
 def _report(trajectory: Trajectory) -> None:
-    from model.analysis.ride import summary, warnings
+    from model.analysis.ride import Summary, warnings
 
-    of = summary(trajectory)
+    of = Summary(trajectory)
     output.print(_load_table(of))
     output.print(_figure_table(trajectory, of))
     for warning in warnings(trajectory):

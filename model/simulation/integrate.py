@@ -96,12 +96,14 @@ class Integration:
         atol: float = 1e-6,
         step: float = 1e-3,
         capacity: int | None = None,
+        figures_only: bool = False,
     ) -> None:
+        """figures_only: samples hold what figures are read off, and no more."""
         self.system, self.lanes, self.road = system, in_lanes(system), road
         self.duration, self.rate = duration, rate
         self.integrator, self.rtol, self.atol = integrator, rtol, atol
         self.apart_allowed = APART_ALLOWED
-        self.samples = make_samples(system, capacity or sample_count(duration, rate))
+        self.samples = make_samples(system, capacity or sample_count(duration, rate), figures_only)
         self._memory = Memory(y.copy(), np.zeros_like(y), np.zeros_like(y), np.zeros((STAGES, len(y))))
         self._work = make_work(system)
         self._extremes = make_extremes(system)
@@ -137,6 +139,7 @@ class Integration:
         y: np.ndarray,
         duration: float,
         capacity: int | None = None,
+        figures_only: bool = False,
     ) -> Integration:
         """A run as the configuration wants it integrated."""
         return cls(
@@ -150,6 +153,7 @@ class Integration:
             settings.atol,
             settings.step,
             capacity,
+            figures_only,
         )
 
     def ending(self, settings: Simulation) -> tuple[str, str]:

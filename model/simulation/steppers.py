@@ -55,21 +55,25 @@ class Samples(NamedTuple):
 
     q: np.ndarray  # (N, B, 3)
     v: np.ndarray  # (N, B, 3)
-    a: np.ndarray  # (N, B, 3)
+    a: np.ndarray  # (N, B, 3); of the chassis only (N, 1, 3) where only figures are wanted
     f_n: np.ndarray  # (N, W)
     f_t: np.ndarray  # (N, W)
     xi: np.ndarray  # (N, W)
     F: np.ndarray  # (N,)
-    lam: np.ndarray  # (N, rows of C)
+    lam: np.ndarray  # (N, rows of C); (N, 0) where only figures are wanted
     residual: np.ndarray  # (N,)
     work: np.ndarray  # (N,) J
 
 
-def make_samples(system: System, count: int) -> Samples:
-    """Room for that many samples, in one piece: the system gives a large one in large pages, which is quicker."""
+def make_samples(system: System, count: int, figures_only: bool = False) -> Samples:
+    """Room for that many samples, in one piece: the system gives a large one in large pages, which is quicker.
+
+    figures_only: without what no figure is read off.
+    """
     B, W = len(system.mass), len(system.wheel)
     rows = 2 * len(system.joint_i) + int(system.prescribed)
-    shapes = [(count, *shape) for shape in [(B, 3), (B, 3), (B, 3), (W,), (W,), (W,), (), (rows,), (), ()]]
+    accelerated, rows = (1, 0) if figures_only else (B, rows)
+    shapes = [(count, *shape) for shape in [(B, 3), (B, 3), (accelerated, 3), (W,), (W,), (W,), (), (rows,), (), ()]]
     ends = np.cumsum([0, *map(prod, shapes)])
     block = np.empty(ends[-1])
     parts = (block[first:end].reshape(shape) for first, end, shape in zip(ends, ends[1:], shapes, strict=False))
@@ -131,15 +135,17 @@ def error_scale(system: System, rtol: float, atol: float) -> np.ndarray:
 
 @compiled
 def record(lanes, road, t, y, dy, work, samples, k):
-    """Sample k: everything that the state y at time t tells."""
+    """Sample k: everything that the state y at time t tells, as far as samples have room for it."""
     rates(lanes, road, t, y, dy, work)
-    multipliers(lanes, dy, work, samples.lam[k])
+    if samples.lam.shape[1] > 0:
+        multipliers(lanes, dy, work, samples.lam[k])
     for b in range(len(lanes.place)):
         for axis in range(3):
-            position, speed = lanes.place[b, axis], lanes.place[b, axis + 3]
-            samples.q[k, b, axis] = y[position]
-            samples.v[k, b, axis] = y[speed]
-            samples.a[k, b, axis] = dy[speed]
+            samples.q[k, b, axis] = y[lanes.place[b, axis]]
+            samples.v[k, b, axis] = y[lanes.place[b, axis + 3]]
+    for b in range(samples.a.shape[1]):
+        for axis in range(3):
+            samples.a[k, b, axis] = dy[lanes.place[b, axis + 3]]
     loads(lanes, work, samples.f_n[k], samples.f_t[k])
     for wheel in range(len(lanes.xi_place)):
         samples.xi[k, wheel] = y[lanes.xi_place[wheel]]

@@ -25,7 +25,7 @@ from model.config.parameters import Value
 from model.config.validation import shorten
 from model.dynamics.equilibrium import NoEquilibriumError
 from model.simulation.batch import in_order
-from model.simulation.simulate import simulate, warm_up
+from model.simulation.simulate import simulate_motion, warm_up
 from model.study.design import DesignError, Range, design
 
 if TYPE_CHECKING:
@@ -205,7 +205,7 @@ def laid_over(base: Config, record: Signal, low_pass: float | None = None, at: P
 def _measured(base: Config, at: Point, changes: Mapping[str, Value]) -> Signal | None:
     """What a sensor in the hull measures in a run."""
     try:
-        run = simulate(base.replace(changes))
+        run = simulate_motion(base.replace(changes))
     except (ConfigError, NoEquilibriumError):
         return None
     return (run.t, point_acceleration(run, at)[:, 1]) if run.complete else None

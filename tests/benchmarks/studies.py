@@ -20,7 +20,7 @@ from time import perf_counter, sleep
 
 from model import load_config, simulate
 from model.analysis.figures import figures_by_name
-from model.analysis.ride import summary
+from model.analysis.ride import Summary
 from model.simulation.batch import in_order
 from model.study.design import Range, Study, make_study
 from model.study.running import Spread, rows
@@ -69,7 +69,7 @@ def _overhead() -> dict[str, tuple[float, str]]:
     run = simulate(study.base)
     for _ in range(RUNS):
         began = perf_counter()
-        figures_by_name(summary(run))
+        figures_by_name(Summary(run))
         figures.append(perf_counter() - began)
     return {
         "a study's run, all figures and its row": (median(ratios), "times a bare run"),

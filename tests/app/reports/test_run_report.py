@@ -19,7 +19,7 @@ from app.reports import run_report as report
 from app.reports.drawings import LIGHT_LOOK, Drawing
 from app.reports.run_report import report_page, ride_rows
 from model import load_config, simulate
-from model.analysis.ride import summary
+from model.analysis.ride import Summary
 from model.config.config import parse_config
 from model.simulation.trajectory import Trajectory
 
@@ -82,7 +82,7 @@ def test_all_texts_are_escaped(page):
 
 
 def test_figures_and_checks(page, fast):
-    of = summary(fast)
+    of = Summary(fast)
     assert ("Vertical acceleration, rms", figure_text(of.acceleration_rms), "m/s²") in ride_rows(fast)
     for row in ride_rows(fast):
         assert f"<dt>{row.label}</dt><dd>{row.value}" in page

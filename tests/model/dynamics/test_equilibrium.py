@@ -229,3 +229,14 @@ def test_a_rest_pose_on_one_side_of_a_saddle_is_found_leaning(monkeypatch):
     monkeypatch.setattr("model.dynamics.equilibrium.STARTS", ((0.1, 0.2),))
     q, load = rest_pose(system)
     assert_at_rest(system, q, load)
+
+
+def test_vehicles_that_differ_only_in_motion_share_their_rest_pose():
+    """To the last digit; what matters at rest makes another one."""
+    resting = rest_pose(build_system(PAPER))
+    for changes in ({"drive.speed_kmh": 30}, {"contact.normal_damping": 1e5}, {f"{ROAD_SPRING}.damping": 100}):
+        for mine, other in zip(resting, rest_pose(build_system(PAPER.replace(changes))), strict=True):
+            assert (mine == other).all()
+            assert mine is not other
+    for changes in ({"contact.normal_stiffness": 1e7}, {"vehicle.chassis.mass": 9000}):
+        assert (rest_pose(build_system(PAPER.replace(changes)))[0] != resting[0]).any()
