@@ -43,7 +43,7 @@ TESTS = {
     SUSPENSION: ("tests/model/dynamics/test_suspension.py",),
     VALIDATION: ("tests/model/config/test_validation.py", "tests/model/config/test_config.py"),
     COMFORT: ("tests/model/analysis/test_comfort.py",),
-    SIGNALS: ("tests/model/analysis/test_signals.py", "tests/model/analysis/test_ride.py"),
+    SIGNALS: tuple(f"tests/model/analysis/test_{name}.py" for name in ("signals", "comfort", "ride")),
     RIDE: ("tests/model/analysis/test_ride.py", "tests/model/analysis/test_figures.py"),
     FIGURES: ("tests/model/analysis/test_figures.py",),
     TRAJECTORY: ("tests/model/simulation/test_trajectory.py",),
