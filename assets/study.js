@@ -822,6 +822,8 @@ if (!window.trackrideStudy) {
     document.addEventListener(end, ({target}) => { if (target.closest?.(lists)) study.picking = false; }, true);
   setInterval(() => {
     drawn?.mark?.();
+    const columns = study.choice.view === 'profiler' ? study.data.profiler?.columns ?? [] : [];
+    study.page?.querySelector('.body')?.classList.toggle('stale', columns.some((one) => present(one) !== one.now));
     if (study.due && !drawn?.held?.() && !study.picking) { study.due = false; draw(); }
     strips();
   }, 150);
