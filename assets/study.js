@@ -212,7 +212,7 @@ if (!window.trackrideStudy) {
       marks.forEach((tick) => svg.append(
         make('path', {d: `M${x(tick).toFixed(1)} ${base - between}v4`, stroke: colours.frame}),
         text(x(tick), base + 6, words(tick, 4), {
-          fill: colours.dim, size: 10, anchor: narrow && tick === column.low ? 'start' : narrow ? 'end' : 'middle',
+          fill: colours.dim, size: 10, anchor: x(tick) < start + 8 ? 'start' : x(tick) > start + wide - 8 ? 'end' : 'middle',
         }),
       ));
       names[c].forEach((line, k) => svg.append(
