@@ -43,6 +43,7 @@ class ParameterPanel:
         for parameter in PARAMETERS:
             if parameter.what_if:
                 self._controls[parameter.key] = Control(gui, parameter, _value(config, parameter), actions)
+        self.matters = gui.add_html("")  # for others to fill
         steps = gui.add_button_group(
             "Changes",
             ("Undo", "Redo", "Reset"),
@@ -87,6 +88,11 @@ class ParameterPanel:
             self._actions.refuse_text(text)
         else:
             self._actions.enter(control.parameter.key, file_value(control.parameter, text))
+
+    @property
+    def sliders(self) -> dict[str, str]:
+        """viser's names of the sliders, by key."""
+        return {key: control.box for key, control in self._controls.items() if control.parameter.what_if}
 
     def __getitem__(self, key: str) -> Control:
         return self._controls[key]

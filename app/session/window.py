@@ -23,10 +23,11 @@ from app.panels.page_layout import PageLayout, page_layout
 from app.panels.page_setup import add_hints, add_page, apply_theme, layout_html, store_visit, title_html
 from app.panels.parameter_panel import ParameterPanel
 from app.panels.playback_panel import PlaybackPanel, covered
-from app.panels.plot_panel import RUNS, PlotPanel
+from app.panels.plot_panel import RUNS, STUDY, PlotPanel
 from app.panels.runs_panel import RunsPanel
 from app.panels.shortcuts import add_shortcuts
 from app.panels.status_line import BUSY_DELAY, drive_facts, progress_line, run_line, status_line
+from app.panels.study_panel import StudyPanel
 from app.panels.view_panel import ViewPanel
 from app.panels.wheel_card import WheelCard
 from app.runs.drive import DriveState
@@ -139,6 +140,7 @@ class Window:
             self._plots_panel = gui.add_panel()
             self._plots = PlotPanel(client, self._plots_panel, layout, self._dark, actions)
             self.runs = RunsPanel(gui, self._plots.runs_tab, actions)
+            self.study = StudyPanel(gui, self._plots.study_tab, self._controls, actions)
             self._plots_panel.dock_right()
             self._playback = PlaybackPanel(gui, actions)
             self._card = WheelCard(gui, actions)
@@ -357,6 +359,15 @@ class Window:
     def runs_in_front(self) -> bool:
         """Whether the tab of the runs is seen."""
         return RUNS in self._plots.in_front
+
+    @property
+    def study_in_front(self) -> bool:
+        """Whether the tab of studies is seen."""
+        return STUDY in self._plots.in_front
+
+    def follow(self, key: str, value: Any) -> None:
+        """Let the control of a parameter show a value that the user has set elsewhere."""
+        self._controls[key].show(value)
 
     def set_page_size(self, width: int, height: int, view: int) -> None:
         """Share a page of this size among the panels; view: width of the 3-D view as it is, px."""
