@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 
 from model.analysis.comfort import Comfort
-from model.analysis.ride import Summary, summary
+from model.analysis.ride import Summary
 from model.analysis.signals import same_window
 from model.simulation.trajectory import Trajectory
 
@@ -30,6 +30,7 @@ class Figure:
     meaning: str
     of: Callable[[Summary], Reading]  # in the unit; of each wheel where it is per wheel, road wheels first
     per_wheel: bool = False
+    road_wheels_only: bool = False  # where it is per wheel
     better: Literal["smaller", "larger"] | None = "smaller"  # None: neither, as such
     least: float = 1e-3  # in the unit: a baseline smaller than this is as good as nothing
     grows: Literal["window", "run"] | None = None  # with what it grows
@@ -130,6 +131,7 @@ TRAVEL = Figure(
     "of each road wheel in the hull, from its lowest to its highest place in the whole run",
     lambda of: 1e3 * (of.travel_up - of.travel_down),
     per_wheel=True,
+    road_wheels_only=True,
     better=None,
     least=1e-2,
 )
@@ -182,19 +184,33 @@ class Row:
         return f"{self.figure}, {self.wheel}" if self.wheel else self.figure
 
 
-def figures_by_name(of: Summary) -> dict[str, float | None]:
-    """All figures; of those per wheel each wheel's, "peak_load.R1", and as "peak_load" the worst wheel's.
+def figure_named(name: str, of: Summary) -> float | None:
+    """A figure by its name: of each wheel "peak_load.R1", and as "peak_load" the worst wheel's.
 
-    The worst time in the air is that of all road wheels together. A figure that cannot be told is None.
+    The worst time in the air is that of all road wheels together. None: it cannot be told, or there is no such wheel.
     """
+    name, _, wheel = name.partition(".")
+    figure = FIGURE[name]
+    reading = figure.of(of)
+    if not isinstance(reading, np.ndarray):
+        return reading
+    wheels = _of_wheels(of, reading)
+    return wheels.get(wheel) if wheel else _worst(figure, wheels)
+
+
+def figures_by_name(of: Summary) -> dict[str, float | None]:
+    """All figures, of those per wheel each wheel's and the worst wheel's: see figure_named."""
     named: dict[str, float | None] = {}
-    worst: dict[str, float | None] = dict.fromkeys(figure.name for figure in WHEEL_FIGURES)
-    for (figure, wheel), value in _values(of, FIGURES).items():
-        named[f"{figure.name}.{wheel}" if wheel else figure.name] = value
-        if wheel and value is not None:
-            most = worst[figure.name]
-            worst[figure.name] = value if most is None else max(most, value)
-    return named | worst | {AIR_TIME.name: float(of.air_time[: len(of.travel_up)].sum())}
+    worst: dict[str, float | None] = {}
+    for figure in FIGURES:
+        reading = figure.of(of)
+        if isinstance(reading, np.ndarray):
+            wheels = _of_wheels(of, reading)
+            named |= {f"{figure.name}.{wheel}": value for wheel, value in wheels.items()}
+            worst[figure.name] = _worst(figure, wheels)
+        else:
+            named[figure.name] = reading
+    return named | worst
 
 
 def comparison(now: Trajectory, baseline: Trajectory | None) -> list[Row]:
@@ -205,7 +221,7 @@ def comparison(now: Trajectory, baseline: Trajectory | None) -> list[Row]:
     """
     runs = [now] if baseline is None else [now, baseline]
     sampling = max(1 / run.config.simulation.output_rate for run in runs)
-    summaries = [summary(run) for run in runs]
+    summaries = [Summary(run) for run in runs]
     present, *others = (_values(of, RIDE_FIGURES) for of in summaries)
     other: Mapping[tuple[Figure, str], float | None] = others[0] if others else {}
     rows = []
@@ -254,8 +270,19 @@ def _values(of: Summary, figures: tuple[Figure, ...]) -> dict[tuple[Figure, str]
     for figure in figures:
         reading = figure.of(of)
         if isinstance(reading, np.ndarray):
-            wheels = zip(of.names, reading.tolist(), strict=False)
-            found |= {(figure, name): value for name, value in wheels if isfinite(value)}
+            found |= {(figure, name): value for name, value in _of_wheels(of, reading).items()}
         else:
             found[figure, ""] = reading
     return found
+
+
+def _of_wheels(of: Summary, reading: np.ndarray) -> dict[str, float]:
+    """A reading of each wheel by the wheel's name, where it can be told."""
+    return {name: value for name, value in zip(of.names, reading.tolist(), strict=False) if isfinite(value)}
+
+
+def _worst(figure: Figure, wheels: Mapping[str, float]) -> float | None:
+    """Of all wheels; None where it can be told of none."""
+    if figure is AIR_TIME:
+        return float(np.sum([value for wheel, value in wheels.items() if wheel.startswith("R")]))
+    return max(wheels.values(), default=None)

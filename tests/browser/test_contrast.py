@@ -48,5 +48,5 @@ def test_all_text_stands_out_from_what_is_behind_it(at_rest: Explorer) -> None:
         for tab in TABS:
             page.get_by_role("tab", name=tab, exact=True).click()
             with suppress(PlaywrightTimeoutError):  # colours change in a moment
-                page.wait_for_function(f"least => !({PALE})(least).length", arg=LEAST, timeout=SOON / 10)
+                page.wait_for_function(f"least => !({PALE})(least).length", arg=LEAST, timeout=SOON)
             assert page.evaluate(PALE, LEAST) == [], f"{tab}, {look}"
