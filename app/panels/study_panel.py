@@ -18,7 +18,7 @@ from app.plots.study_data import Data, FigureUnit
 from app.runs.study_choice import VARIABLE, VIEWS, StudyChoice, choice_from, figure_names
 from model.config.parameters import PARAMETER, PARAMETERS
 
-SAYS = "Study"  # label of the box by which the page tells something; nobody sees it
+SAYS = "Study says"  # label of the box by which the page tells something; nobody sees it
 
 
 class StudyPanel:

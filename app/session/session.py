@@ -352,8 +352,8 @@ class Session:
         self._wake.set()
         self._runner.close()
         self._transfers.close()
-        self._studies.close()
         self._thread.join()
+        self._studies.close()  # now that nobody begins another one
 
     # ── What is seen: on the view's thread from here on ──
 

@@ -15,7 +15,7 @@ NOT_SEEN = (
     "Dark pages",
     "Visit",
     "Typed",
-    "Study",
+    "Study says",
     "Size",
     "At",
 )  # that only the page itself uses
