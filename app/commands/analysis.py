@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from app.commands.common import CANCELLED, check_folder, counting, fail, interrupt, output, writing
+from app.commands.common import CANCELLED, check_folder, counting, fail, interrupt, output, say, writing
 
 if TYPE_CHECKING:
     from model.study.memory import Memory
@@ -72,6 +72,8 @@ def remembered(name: str, folder: Path, resume: bool, total: int, scheduler: str
             memory = Memory(folder / RUNS, version("trackride"), resume, count, should_stop, spread)
         except DesignError as error:
             fail(str(error))
+        if memory.known:
+            say(f"{folder / RUNS}: {len(memory.known)} runs are there already.")
         try:
             yield memory
             memory.finish()

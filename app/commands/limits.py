@@ -37,7 +37,6 @@ def limits(
     bases = [configuration(config, changes) for config in configs or ["paper"]]
     from model.config.config import ConfigError, read_profile
     from model.study import limits as found
-    from model.study.limits import SPEEDS
 
     measured = {}
     for file in profile or ():
@@ -55,7 +54,7 @@ def limits(
         for name, points in measured.items():
             grounds += found.profile_grounds(base, name, points)
         vehicles.append((base, [*grounds, *found.half_round_grounds(base)]))
-    runs = sum(len(SPEEDS) + found.ROUNDS for _, grounds in vehicles for _ in grounds)
+    runs = sum(found.runs_about(grounds) for _, grounds in vehicles)
     with remembered(", ".join(base.name for base in bases), out, resume, runs, scheduler) as evaluate:
         limited = found.limits(vehicles, evaluate)
     if not any(value is not None for limit in limited for value in limit.values):

@@ -30,7 +30,9 @@ def optimise(
     ] = None,
     roads: Annotated[
         list[str] | None,
-        typer.Option(metavar="CONFIG", help="On the road of this file or preset as well; may be repeated."),
+        typer.Option(
+            metavar="CONFIG", help="On the road of this file or preset as well, at CONFIG's speed; may be repeated."
+        ),
     ] = None,
     mean: Annotated[
         bool, typer.Option("--mean/--worst", help="Of several roads the mean counts, or the worst.")
@@ -54,15 +56,22 @@ def optimise(
         fail("give --minimise FIGURE once, or twice for the front of two figures")
     from app.reports.studies.optimum import files, table
     from model.study import optimum
-    from model.study.design import DesignError
+    from model.study.design import DesignError, check_analysis, check_key
 
     try:
         bounds = [optimum.parse_bound(text, base) for text in subject_to or ()]
     except DesignError as error:
         fail(f"--subject-to {error}")
     bases = [base, *(optimum.on_road(base, configuration(road, None)) for road in roads or ())]
-    members = min(max(optimum.PER_KEY * len(ranges), optimum.LEAST), optimum.MOST)
-    with remembered(base.name, out, resume, members * (generations + 1) * len(bases), scheduler) as evaluate:
+    runs = optimum.members(len(ranges)) * (generations + 1) * len(bases)
+    try:
+        check_analysis(ranges, runs)
+        for of in ranges:
+            for on in bases:
+                check_key(of.key, on)
+    except DesignError as error:
+        fail(f"--over {error}")
+    with remembered(base.name, out, resume, runs, scheduler) as evaluate:
         found = optimum.optimise(bases, ranges, goals, bounds, mean, generations, seed, evaluate)
     print_table(table(found))
     write_results(out, files(found, bases, ranges, mean))

@@ -42,9 +42,15 @@ def sensitivity(
     ranges = only_ranges(parsed(over, "--over", base))
     chosen = chosen_figures(figures, base)
     from app.reports.studies.sensitivity import files, table
+    from model.study.design import DesignError, check_analysis
+    from model.study.sensitivity import runs_of
     from model.study.sensitivity import sensitivity as found_sensitivity
 
-    runs = trajectories * (len(ranges) + 1) + samples * (len(ranges) + 2)
+    runs = runs_of(len(ranges), trajectories, samples)
+    try:
+        check_analysis(ranges, runs, least=2)
+    except DesignError as error:
+        fail(str(error))
     with remembered(base.name, out, resume, runs, scheduler) as evaluate:
         found = found_sensitivity(base, ranges, chosen, trajectories, samples, seed, evaluate)
     if found.lost:
@@ -60,6 +66,8 @@ def only_ranges(varied: list[Varied]) -> list[Range]:
     for of in varied:
         if not isinstance(of, Range):
             fail(f"--over {of.key}: give a range, KEY=LO:HI")
+        if of.count is not None:
+            fail(f"--over {of.key}: any value of the range is taken, not {of.count} of them; give KEY=LO:HI")
     keys = [of.key for of in varied]
     for key in keys:
         if keys.count(key) > 1:

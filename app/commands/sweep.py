@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from model.study.design import Study, Varied
 
 EXAMPLE = "Example: trackride sweep paper --vary drive.speed_kmh=5:40:8 --vary road.amplitude=0.05,0.1 --out speed.csv"
-MEGABYTES = 1.0  # of a kept run of 10 s of the paper's vehicle, compressed; about in proportion to its samples
+MEGABYTES = 4.3  # of a kept run of 10 s of the paper's vehicle, compressed; about in proportion to its samples
 
 VaryOption = Annotated[
     list[str],

@@ -20,6 +20,7 @@ from model.config.validation import convert, shorten, unknown_fault
 
 VARIED = ("number", "integer", "choice", "flag", "list")  # kinds of parameters that a study may vary
 MOST_RUNS = 10_000_000
+MOST_AT_ONCE = 1_000_000  # of an analysis, which holds all of them
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 RANGE = re.compile(rf"({NUMBER}):({NUMBER})(?::(\S+))?")
 
@@ -180,6 +181,9 @@ def _points(varied: Sequence[Varied], sample: str, seed: int) -> Sequence[Point]
         raise DesignError(f"sample {sample}: give latin-hypercube:N, sobol:N or grid")
     if not (count.isascii() and count.isdigit() and 1 <= int(count) <= MOST_RUNS):
         raise DesignError(f"sample {sample}: give the number of runs, from 1 to {MOST_RUNS}: {method}:256")
+    for of in varied:
+        if isinstance(of, Range) and of.count is not None:
+            raise DesignError(f"{of.key}: a sample takes its own values, not {of.count}; give FROM:TO")
     return Sample(varied, design(method, int(count), len(varied), seed))
 
 
@@ -196,6 +200,14 @@ def design(method: Literal["latin-hypercube", "sobol"] | str, runs: int, keys: i
     return qmc.Sobol(keys, rng=random).random_base2(power)
 
 
+def check_analysis(over: Sequence[Range], runs: int, least: int = 1) -> None:
+    """Raises DesignError for an analysis over too few ranges, or of too many runs."""
+    if len(over) < least:
+        raise DesignError("give two keys or more: there is nothing to compare one with")
+    if runs > MOST_AT_ONCE:
+        raise DesignError(f"{runs} runs are more than {MOST_AT_ONCE}: give fewer keys, samples or rounds")
+
+
 def parse_varied(text: str, base: Config, road_varies: bool = False) -> Varied:
     """KEY=FROM:TO, KEY=FROM:TO:N or KEY=a,b,c. Raises DesignError.
 
@@ -207,6 +219,9 @@ def parse_varied(text: str, base: Config, road_varies: bool = False) -> Varied:
     parameter = _parameter(key, base, road_varies)
     found = RANGE.fullmatch(given)
     if found is None:
+        if ":" in given and parameter.kind in ("number", "integer"):
+            end = next((end for end in given.split(":")[:2] if not re.fullmatch(NUMBER, end)), given)
+            raise DesignError(f"{text}: {end!r} is no number; give KEY=FROM:TO:N, each {parameter.allowed}")
         return Values(key, _values(given, parameter))
     if parameter.kind not in ("number", "integer"):
         raise DesignError(f"{text}: {key} has no range; give {parameter.allowed}, several with commas between them")
@@ -218,7 +233,7 @@ def parse_varied(text: str, base: Config, road_varies: bool = False) -> Varied:
     if found[3] is None:
         return Range(key, low, high)
     if not (found[3].isascii() and found[3].isdigit() and 2 <= int(found[3]) <= MOST_RUNS):
-        raise DesignError(f"{text}: {found[3]!r} is no number of values; give a whole number from 2 on")
+        raise DesignError(f"{text}: {found[3]!r} is no number of values; give a whole number from 2 to {MOST_RUNS}")
     varied = Range(key, low, high, int(found[3]))
     if varied.whole and len(set(varied.steps)) < len(varied.steps):
         raise DesignError(f"{text}: there are only {int(high - low + 1)} whole numbers in the range")
@@ -232,10 +247,17 @@ def _parameter(key: str, base: Config, road_varies: bool) -> Parameter:
     parameter = PARAMETER[key]
     if parameter.kind not in VARIED:
         raise DesignError(f"{key}: cannot be varied; a study varies numbers, choices and lists of numbers")
-    if not (road_varies or parameter.applies_to(base.road.type)):
+    if not road_varies:
+        check_key(key, base)
+    return parameter
+
+
+def check_key(key: str, base: Config) -> None:
+    """Raises DesignError for a key that the base's road does not have."""
+    parameter = PARAMETER[key]
+    if not parameter.applies_to(base.road.type):
         roads = " and ".join(parameter.roads)
         raise DesignError(f"{key}: a road of type {base.road.type} has no such key; it belongs to {roads}")
-    return parameter
 
 
 def _values(given: str, parameter: Parameter) -> tuple[Value, ...]:

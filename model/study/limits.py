@@ -28,6 +28,7 @@ SPEEDS = (2.0, 3.0, 4.0, 6.0, 8.0, 11.0, 15.0, 20.0, 28.0, 40.0, 56.0, 80.0)  # 
 FAST = 11.0  # km/h: faster ones are tried at once, and then slower ones, one after the other …
 FAR_BELOW = 0.2  # … until the figure is less than this part of its bound
 BETWEEN = (62.0, 68.0, 74.0)  # km/h, over half-rounds too: over them the shock rises and falls more quickly with speed
+SLOWER = 2  # speeds up to FAST that are usually tried
 ROUNDS = 2  # of closer search, each with one more run
 STRETCH = 80.0  # m of random road that figures are taken from
 COURSE = 150.0  # m of a measured profile that is driven over, at most
@@ -161,6 +162,20 @@ def limits(vehicles: Sequence[tuple[Config, Sequence[Ground]]], evaluate: Evalua
     return [case.limit() for case in cases]
 
 
+def runs_about(grounds: Sequence[Ground]) -> int:
+    """That the limits on these grounds usually take."""
+    return sum(len(_first_speeds(ground)) + ROUNDS + (0 if _is_half_round(ground) else SLOWER) for ground in grounds)
+
+
+def _is_half_round(ground: Ground) -> bool:
+    return ground.family == "half-round"
+
+
+def _first_speeds(ground: Ground) -> list[float]:
+    """Half-rounds are short: over them slow runs take no time."""
+    return sorted({*SPEEDS, *BETWEEN}) if _is_half_round(ground) else [speed for speed in SPEEDS if speed > FAST]
+
+
 @dataclass
 class _Case:
     """The search on one ground."""
@@ -172,8 +187,8 @@ class _Case:
     def __post_init__(self) -> None:
         self.found: dict[float, Outcome] = {}
         self.rounds = 0  # of closer search that were made
-        self.shock = self.ground.family == "half-round"
-        self.figure, self.bound = (SHOCK.name, SHOCK_BOUND) if self.shock else (POWER.name, POWER_LIMIT)
+        shock = _is_half_round(self.ground)
+        self.figure, self.bound = (SHOCK.name, SHOCK_BOUND) if shock else (POWER.name, POWER_LIMIT)
 
     def job(self, speed: float) -> Job:
         after = SETTLING if self.ground.family == "ISO 8608" else AFTER
@@ -183,8 +198,7 @@ class _Case:
     def wanted(self) -> list[float]:
         """The speeds to be tried next; none once the limit is known."""
         if not self.found:
-            # Half-rounds are short, and over them slow runs take no time
-            return sorted({*SPEEDS, *BETWEEN}) if self.shock else [speed for speed in SPEEDS if speed > FAST]
+            return _first_speeds(self.ground)
         slowest, value = self._values()[0]
         slower = [speed for speed in SPEEDS if speed < slowest]
         if slower and not (value is not None and value < FAR_BELOW * self.bound):

@@ -79,6 +79,11 @@ def on_road(base: Config, other: Config) -> Config:
     return base.replace(changes)
 
 
+def members(keys: int) -> int:
+    """Of the population of a search over so many keys."""
+    return min(max(PER_KEY * keys, LEAST), MOST)
+
+
 def optimise(
     bases: Sequence[Config],
     over: Sequence[Range],
@@ -98,8 +103,7 @@ def optimise(
         raise DesignError("give one figure to minimise, or two")
     problem = _Problem(bases, over, goals, tuple(bounds), mean, evaluate)
     before = problem.base()
-    members = min(max(PER_KEY * len(over), LEAST), MOST)
-    start = design("latin-hypercube", members, len(over), seed)
+    start = design("latin-hypercube", members(len(over)), len(over), seed)
     random = np.random.default_rng(seed)
     if len(goals) == 1:
         least(lambda points: problem(points)[:, 0], start, generations, random)

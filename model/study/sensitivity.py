@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from model.config.config import Config
-from model.study.design import DesignError, Range, Sample
+from model.study.design import DesignError, Range, Sample, check_analysis
 from model.study.running import Evaluate, Job, at_once
 
 LEVELS = 4  # of each key in Morris's trajectories
@@ -126,6 +126,11 @@ def _saltelli(at_a: np.ndarray, at_b: np.ndarray, at_ab: np.ndarray) -> tuple[np
     return first.T, total.T
 
 
+def runs_of(keys: int, trajectories: int, samples: int) -> int:
+    """That both measures take."""
+    return trajectories * (keys + 1) + samples * (keys + 2)
+
+
 def sensitivity(
     base: Config,
     over: Sequence[Range],
@@ -136,8 +141,7 @@ def sensitivity(
     evaluate: Evaluate = at_once,
 ) -> Sensitivity:
     """Both measures of figures of the base. Raises DesignError where too many runs come to grief."""
-    if len(over) < 2:
-        raise DesignError("give two keys or more: there is nothing to compare one with")
+    check_analysis(over, runs_of(len(over), trajectories, samples), least=2)
     count = {"runs": 0, "lost": 0}
 
     def function(points: np.ndarray) -> np.ndarray:

@@ -41,6 +41,8 @@ def files(found: Optimum, bases: Sequence[Config], over: Sequence[Range], mean: 
     ]
     ranges = [[key_label(of.key), of.key, f"{number_text(of.low)} to {number_text(of.high)}"] for of in over]
     roads = f"{'Mean' if mean else 'Worst'} of {len(bases)} roads" if len(bases) > 1 else "One road"
+    if len(bases) > 1 and "drive.speed_kmh" not in (of.key for of in over):
+        roads += f", all at {number_text(bases[0].drive.speed_kmh)} km/h"
     body = [
         element("h2", "Best" if single else "Front"),
         wide_table(heads, shown),

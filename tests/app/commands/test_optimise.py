@@ -52,6 +52,10 @@ def test_every_point_of_a_front_is_a_configuration(tmp_path):
         ((*SHORT[2:4], "--minimise", "shok"), "--minimise shok: there is no such figure; the nearest one is shock"),
         ((*SHORT[2:4], "--minimise", "shock", "--subject-to", "pitch<3"), "--subject-to pitch<3: give FIGURE<=VALUE"),
         ((*SHORT[2:4], "--minimise", "shock", "--roads", "nowhere"), "nor a preset of that name"),
+        (
+            ("--over", "road.amplitude=0.01:0.1", "--minimise", "shock", "--roads", "half_round"),
+            "--over road.amplitude: a road of type half_round has no such key; it belongs to sine",
+        ),
     ],
 )
 def test_bad_input_is_refused(arguments, words, tmp_path, monkeypatch):

@@ -35,6 +35,9 @@ def test_page_figure_and_table_are_written_and_a_second_time_takes_no_runs(tmp_p
     assert (folder / "runs.jsonl").read_bytes() == first["runs.jsonl"]
 
 
+OVER = ("--over", "drive.speed_kmh=10:20", "--over", "road.amplitude=0.05:0.1")
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -43,7 +46,9 @@ def test_page_figure_and_table_are_written_and_a_second_time_takes_no_runs(tmp_p
         (("--over", "drive.speed=10:20"), "the nearest known one is drive.speed_kmh"),
         (("--over", "drive.speed_kmh=10:20", "--over", "drive.speed_kmh=10:20"), "is given twice"),
         (("--over", "drive.speed_kmh=10:20"), "give two keys or more"),
+        (("--over", "drive.speed_kmh=10:20:5"), "not 5 of them; give KEY=LO:HI"),
         (("--samples", "12"), "give a power of 2, such as 16"),
+        ((*OVER, "--samples", "1073741824"), "4294967326 runs are more than 1000000"),
         (("--over", "drive.speed_kmh=10:20", "--figures", "shok"), "the nearest one is shock"),
     ],
 )
