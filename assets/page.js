@@ -33,6 +33,15 @@ window.trackrideInTurn ??= (() => {
     setTimeout(act, wait);
   };
 })();
+window.trackrideTell = tell;
+let asks = 0;
+window.trackrideAsk = (kind, content) => trackrideInTurn(() => tell('asked', JSON.stringify({kind, content, count: ++asks})));
+// What its address asks for comes first. viser, when it connects, drops a fragment that stands behind a query, but the
+// browser knows what it was opened with
+{
+  const opened = location.hash || new URL(performance.getEntriesByType('navigation')[0]?.name ?? location.href).hash;
+  if (opened.length > 1) trackrideAsk('link', opened.slice(1));
+}
 // A tab whose page is loaded anew goes on where it was, whatever other tabs of this browser have stored since
 trackrideInTurn(() => tell('visit', sessionStorage.getItem('trackride') ?? 'null'));
 if (!document.body.dataset.trackride) {

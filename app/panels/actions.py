@@ -55,6 +55,12 @@ class Actions(Protocol):
     def save_preset(self, name: str) -> None:
         """Make a preset of the configuration that is shown."""
 
+    def open_link(self, text: str) -> None:
+        """Show what the fragment of an address says (app/format/link.py)."""
+
+    def copy_link(self) -> None:
+        """Give the user an address that shows the same in anybody's explorer."""
+
     # Runs and baseline
 
     def pin(self) -> None:

@@ -30,6 +30,7 @@ class PageSigns(NamedTuple):
     night: viser.GuiCheckboxHandle  # ticked where the browser is set to dark pages
     visit: viser.GuiTextHandle  # what this tab had stored when its page was loaded anew; "null": nothing
     typed: viser.GuiTextHandle  # JSON: viser's name of a box for numbers, what was typed there and is none, a count
+    asked: viser.GuiTextHandle  # JSON: kind, content and a count of what the page asks for (page_requests.py)
     store: viser.GuiHtmlHandle  # what runs there stores something in the tab
     title: viser.GuiHtmlHandle  # see title_html
 
@@ -46,6 +47,7 @@ def add_page(gui: viser.GuiApi) -> PageSigns:
     night = gui.add_checkbox("Dark pages", False)
     visit = gui.add_text("Visit", "")
     typed = gui.add_text("Typed", "")
+    asked = gui.add_text("Asked", "")
     store = gui.add_html("")
     rules = style(
         asset("page.css"),
@@ -54,11 +56,12 @@ def add_page(gui: viser.GuiApi) -> PageSigns:
         data_night=night._impl.uuid,
         data_visit=visit._impl.uuid,
         data_typed=typed._impl.uuid,
+        data_asked=asked._impl.uuid,
         data_decimals=str(PRECISION),
     )
     intro = element("p", INTRO, class_="trackride-intro")
     page.content = str(joined((running(asset("page.js")), intro, rules)))
-    return PageSigns(in_view, in_front, night, visit, typed, store, title)
+    return PageSigns(in_view, in_front, night, visit, typed, asked, store, title)
 
 
 def store_visit(signs: PageSigns, state: str) -> None:

@@ -35,6 +35,7 @@ def add_shortcuts(gui: viser.GuiApi, actions: Actions) -> None:
         ("Redo the change", "Z", "cmd/ctrl+shift", actions.redo),
         ("Pin this run as the baseline", "B", None, actions.pin),
         ("Follow the vehicle, or not", "F", None, partial(actions.toggle_switch, "follow")),
+        ("Copy a link to what is shown", "C", "shift", actions.copy_link),
         ("Screenshot", "S", None, partial(actions.export, PICTURE)),
         *views,
     ):

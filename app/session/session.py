@@ -22,6 +22,7 @@ from app.runs.playback import Playback, time_to_look
 from app.runs.request import Driven, Failed, Finished, Outcome, Refused, Request, Simulate, first_request
 from app.runs.runner import Runner
 from app.runs.turns import SHOWING
+from app.session.address import Address
 from app.session.error_log import Seldom, kind_of
 from app.session.transfers import Download, Transfers
 from app.session.window import VehicleView, Window
@@ -81,6 +82,7 @@ class Session:
             self._runner.close()
             raise
         self._workspace = Workspace(self._window, self._runner, self._presets)
+        self._address = Address(self._window, self._workspace, presets)
         self._transfers = Transfers(client, self, self._window, self._workspace, run)
         self._thread = threading.Thread(target=self._show, name="trackride-view", daemon=True)
         self._thread.start()
@@ -128,6 +130,12 @@ class Session:
 
     def save_preset(self, name: str) -> None:
         self.post("preset", lambda: self._workspace.save_preset(name))
+
+    def open_link(self, text: str) -> None:
+        self.post("link", lambda: self._address.open(text))
+
+    def copy_link(self) -> None:
+        self.post("copy", lambda: self._address.copy())
 
     def pin(self) -> None:
         self.post("baseline", lambda: self._workspace.pin())
@@ -201,7 +209,7 @@ class Session:
         self._stir()
 
     def set_view(self, view: str) -> None:
-        self.post("view", lambda: self._window.view.set_view(view))
+        self.post("view", lambda: self._window.set_view(view))
 
     def pick_wheel(self, wheel: int | None) -> None:
         self.post("wheel", lambda: self._window.pick_wheel(wheel))
@@ -413,6 +421,7 @@ class Session:
                 self._window.show_status(self._runner.under_way())
             self._window.fit_page()
         self._workspace.tick(now)
+        self._address.tick(now)
         missing, news = self._workspace.missing_run, self._workspace.news(now)
         if missing is not None:
             self._transfers.run_again(missing)

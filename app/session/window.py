@@ -14,12 +14,14 @@ from app.format.colours import wheel_palette
 from app.format.load_unit import load_unit
 from app.format.parameters import refusal
 from app.panels.actions import Actions
+from app.panels.address_bar import AddressBar
 from app.panels.callbacks import by_user
 from app.panels.configuration_windows import YamlWindow, show_faults
 from app.panels.controls import PRECISION
 from app.panels.files_panel import FilesPanel
 from app.panels.notifications import Notifications
 from app.panels.page_layout import LEFT, PageLayout, Screen
+from app.panels.page_requests import carry_out
 from app.panels.page_setup import add_hints, add_page, apply_theme, store_visit, title_html
 from app.panels.parameter_panel import ParameterPanel
 from app.panels.playback_panel import PlaybackPanel
@@ -38,7 +40,7 @@ from model.analysis.ride import WheelState
 from model.config.config import Config, ConfigError
 from model.config.validation import shorten
 from model.road.road import Road
-from model.simulation.trajectory import Trajectory
+from model.simulation.trajectory import Trajectory, wheel_names
 
 ROAD_EVERY = 0.35  # s between two side views of the road
 FOLDERS = "View", "Export", "Import and presets"
@@ -103,6 +105,8 @@ class Window:
         self._mode: ModeShow | None = None  # shown in the place of the run
         self._ghost_hidden = False  # the baseline's vehicle is of another size
         self._run_number = 0
+        self._standpoint = ""  # from which the user last chose to look
+        self._to_look: tuple[Config, str, str] | None = None  # standpoint and wheel for when this vehicle is shown
         self._road_due = 0.0  # monotonic s
         self._road_ahead = RoadAhead()
         self._notifications = Notifications(client)
@@ -124,6 +128,8 @@ class Window:
             signs.typed.on_update(
                 by_user(lambda event: self._controls.enter(*json.loads(event.target.value)[:2]), actions.fail)
             )
+            signs.asked.on_update(by_user(lambda event: carry_out(event.target.value, actions), actions.fail))
+            self.address = AddressBar(gui)
             self._controls = ParameterPanel(gui, presets, preset, config, actions)
             with self._controls.middle:
                 self._folders = [gui.add_folder(name, expand_by_default=False) for name in FOLDERS]
@@ -313,6 +319,7 @@ class Window:
         if self._drive is None or self._drive.stands:
             self._plots.point_at(playback.time)
         self._plots.settle()
+        self._look_as_asked()
         self.view.write_loads()
         self._show_wheel()
         self._show_road(playback.time)
@@ -338,6 +345,34 @@ class Window:
             self._controls.road_view.content = view
 
     # ── Looks ──
+
+    @property
+    def looks(self) -> tuple[str, str]:
+        """Standpoint, and name of the wheel whose card is shown; empty where the user has chosen none."""
+        wheel = self._card.wheel
+        return self._standpoint, "" if wheel is None or self._run is None else wheel_names(self._run.system)[wheel]
+
+    def look(self, config: Config, view: str, wheel: str) -> None:
+        """Once this vehicle is shown, look from a standpoint and show the card of a wheel; both may be empty."""
+        self._to_look = config, view, wheel
+
+    def _look_as_asked(self) -> None:
+        if self._to_look is None or self._run is None or self._to_view is not None:
+            return
+        config, view, wheel = self._to_look
+        if config != self._run.config:
+            return
+        self._to_look = None
+        names = wheel_names(self._run.system)
+        if view:
+            self.set_view(view)
+        if wheel in names and names.index(wheel) != self._card.wheel:
+            self.pick_wheel(names.index(wheel))
+
+    def set_view(self, view: str) -> None:
+        """Look at the vehicle from a standpoint."""
+        self._standpoint = view
+        self.view.set_view(view)
 
     def set_in_front(self, tabs: frozenset[str]) -> None:
         """Take note of the tabs of the plots that are seen; from this we also know that the page is laid out."""

@@ -9,7 +9,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from app.runs.history import REST, Changes, Kept, Runs, run_name
+from app.format.link import Link
+from app.runs.history import REST, RUN_COLOURS, Changes, Kept, Runs, run_name
 from app.runs.request import Finished, Request, first_request, same
 from app.runs.runner import Runner
 from app.runs.storage import PRESETS, State, state_text
@@ -47,6 +48,7 @@ class Workspace:
         self._stored = ""
         self._dark: bool | None = None  # the look that the user has chosen
         self._prefers_dark = False
+        self._link: Link | None = None  # to be opened once the browser has told what it has stored
         self._restored = False  # the browser has told what it has stored; from then on we may overwrite it
 
     @property
@@ -58,6 +60,21 @@ class Workspace:
     def baseline(self) -> Trajectory | None:
         """The run that others are compared with."""
         return None if self._baseline is None else self._baseline.run
+
+    @property
+    def present(self) -> Request:
+        """What undo and redo have led to: the newest request that came true."""
+        return self._changes.present
+
+    @property
+    def steps(self) -> tuple[int, Config | None]:
+        """Another one at each step that the user takes: of undo, or to another baseline."""
+        return self._changes.count, _config_of(self._baseline)
+
+    @property
+    def stands(self) -> bool:
+        """Whether the browser has told what it has stored, and nothing that was requested is still to come."""
+        return self._restored and same(self._runner.latest, self.present)
 
     # ── What happens ──
 
@@ -260,6 +277,21 @@ class Workspace:
         base = self._runner.latest.base
         self._request(first_request(base, config) if config.name == base.name else Request(config))
 
+    def open(self, link: Link) -> None:
+        """Request configuration and baseline of a link, once the browser has told what it has stored."""
+        if not self._restored:
+            self._link = link
+            return
+        if _config_of(self._baseline) != link.baseline:
+            self._set_baseline(
+                None if link.baseline is None else self._linked_baseline(link.baseline_preset, link.baseline)
+            )
+        if not _asks_for(self._runner.latest, link.config):
+            self._request(first_request(self._presets[link.preset], link.config))
+
+    def _linked_baseline(self, preset: str, config: Config) -> Kept:
+        return self._runs.find(config) or _to_be_run(first_request(self._presets[preset], config))
+
     def change_road(self, changes_of: Callable[[Config], dict[str, Any]]) -> None:
         """Request changes (dotted key -> value) to the road of the latest request, if that request is valid."""
 
@@ -315,15 +347,23 @@ class Workspace:
     def restore(self, state: State | None) -> None:
         """Go on where this browser was at its last visit; None: the browser told nothing.
 
-        Look, presets and runs are there again in any case; parameters and baseline unless the explorer was started with
-        something else, or the user is at work already.
+        Look, presets and runs are there again in any case; parameters and baseline unless a link says others, the
+        explorer was started with something else, or the user is at work already.
         """
         self._restored = True
         if state is not None and self._dark is None:
             self._dark = state.dark
         self._look()
-        if state is None:
-            return
+        if state is not None:
+            self._take_stock(state)
+        link, self._link = self._link, None
+        if link is not None and (state is None or not _was_shown(link, state)):
+            self.open(link)
+        elif state is not None:
+            self._go_on(state)
+
+    def _take_stock(self, state: State) -> None:
+        """Have presets and runs again."""
         for preset in state.presets:
             if preset not in self._presets.values():
                 self._offer(preset)
@@ -331,6 +371,9 @@ class Workspace:
         for kept in state.runs:
             self._runs.take_back(kept)
         self._show()
+
+    def _go_on(self, state: State) -> None:
+        """Have parameters and baseline again."""
         latest = self._runner.latest
         if state.start != self._started_with or latest.number != self._start.number:
             return
@@ -339,3 +382,27 @@ class Workspace:
         if state.request is not None and not same(state.request, latest):
             self._request(state.request)
             self._window.say("Welcome back", "All parameters are as you left them. Undo leads back to the start.")
+
+
+def _config_of(kept: Kept | None) -> Config | None:
+    return None if kept is None else kept.config
+
+
+def _was_shown(link: Link, state: State) -> bool:
+    """Whether a link says what the browser was shown last."""
+    shown = None if state.request is None else state.request.config()
+    return (shown, _config_of(state.baseline)) == (link.config, link.baseline)
+
+
+def _asks_for(request: Request, config: Config) -> bool:
+    """Whether a request, which may be no valid one, is for this configuration."""
+    try:
+        return request.config() == config
+    except ConfigError:
+        return False
+
+
+def _to_be_run(request: Request) -> Kept:
+    """A run that is not made yet, for a baseline."""
+    config = request.config()
+    return Kept(0, request, config, None, run_name(request.base, config), RUN_COLOURS[1], named=False)
