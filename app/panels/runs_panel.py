@@ -9,7 +9,7 @@ import viser
 
 from app.format.assets import asset
 from app.format.load_unit import comparison_rows
-from app.format.markup import Content, Html, element, joined, style
+from app.format.markup import Content, Html, element, joined, running, style
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.runs.history import Kept
@@ -28,6 +28,7 @@ class RunsPanel:
         self._gui, self._actions = gui, actions
         self._rows: dict[int, viser.GuiButtonGroupHandle] = {}
         with container:
+            gui.add_html(str(running(asset("runs.js"))))
             self._style = gui.add_html("")
             self._heading = gui.add_html("")
             self._name: Any = gui.add_text(

@@ -49,6 +49,7 @@ class Summary:
     load_rms: np.ndarray  # (W,) N
     load_coefficient: np.ndarray  # (W,) dynamic load coefficient, 0…; see there
     air_time: np.ndarray  # (W,) s without load
+    lift_offs: np.ndarray  # (W,) how often a wheel lost its load
     travel_down: np.ndarray  # (n,) m, lowest wheel centre relative to the hull, from the static pose; ≤ 0
     travel_up: np.ndarray  # (n,) m, highest; ≥ 0
     acceleration_rms: float  # m/s², vertical, of the hull's centre of mass
@@ -117,6 +118,7 @@ def summary(trajectory: Trajectory) -> Summary:
         load_rms=np.sqrt(np.mean(counted**2, axis=0)),
         load_coefficient=dynamic_load_coefficient(counted, trajectory.static_load),
         air_time=air_time(trajectory),
+        lift_offs=lift_offs(load),
         travel_down=travel.min(axis=0),
         travel_up=travel.max(axis=0),
         acceleration_rms=float(np.sqrt(np.mean(trajectory.a[counts, system.chassis, 1] ** 2))),
@@ -139,6 +141,11 @@ def peak_load(trajectory: Trajectory) -> np.ndarray:
 def air_time(trajectory: Trajectory) -> np.ndarray:
     """(W,) s for which each wheel has no load."""
     return trajectory.peaks.air_time
+
+
+def lift_offs(load: np.ndarray) -> np.ndarray:
+    """(W,) how often each wheel's load (N, W) was gone at a sample after it was there at the one before."""
+    return np.count_nonzero((load[1:] <= 0) & (load[:-1] > 0), axis=0)
 
 
 def peak_acceleration(trajectory: Trajectory) -> float:
