@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 from model.config.config import Config
@@ -27,6 +27,15 @@ class Actions(Protocol):
 
     def reset(self) -> None:
         """Go back to the preset without any change."""
+
+    def reset_one(self, key: str) -> None:
+        """Give a parameter the value of the preset."""
+
+    def lead_to(self, key: str) -> None:
+        """Lead the user to the control of a parameter."""
+
+    def set_first(self, keys: Sequence[str]) -> None:
+        """Have these parameters among the first sliders, besides those that always are."""
 
     def undo(self) -> None: ...
 
@@ -124,6 +133,9 @@ class Actions(Protocol):
 
     def pick_wheel(self, wheel: int | None) -> None:
         """Show a wheel's card; None, or the wheel that is picked already: no card."""
+
+    def open_tab(self, tab: str) -> None:
+        """Bring a tab of the plots to the front."""
 
     def set_dark(self, dark: bool) -> None:
         """Choose the look of the page."""

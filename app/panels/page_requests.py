@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 from app.panels.actions import Actions
+from model.config.parameters import PARAMETER
 
 
 def carry_out(text: str, actions: Actions) -> None:
@@ -17,3 +18,7 @@ def carry_out(text: str, actions: Actions) -> None:
     match kind, content:
         case "link", str():
             actions.open_link(content)
+        case "reset", str() if content in PARAMETER:
+            actions.reset_one(content)
+        case "first", list():
+            actions.set_first([key for key in content if isinstance(key, str)])

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from time import monotonic
@@ -109,6 +109,19 @@ class Session:
     def reset(self) -> None:
         self._runner.change(lambda request: Request(request.base))
         self._stir()
+
+    def reset_one(self, key: str) -> None:
+        self._runner.change(lambda request: request.reset(key))
+        self._stir()
+
+    def lead_to(self, key: str) -> None:
+        self.post("sought", lambda: self._window.lead_to(key))
+
+    def set_first(self, keys: Sequence[str]) -> None:
+        self.post("first", lambda: self._window.set_first(keys))
+
+    def open_tab(self, tab: str) -> None:
+        self.post("tab", lambda: self._window.open_tab(tab))
 
     def undo(self) -> None:
         with self._lock:
@@ -422,6 +435,7 @@ class Session:
             self._window.fit_page()
         self._workspace.tick(now)
         self._address.tick(now)
+        self._window.mark_changes(self._workspace.present)
         missing, news = self._workspace.missing_run, self._workspace.news(now)
         if missing is not None:
             self._transfers.run_again(missing)

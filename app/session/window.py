@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from time import monotonic
 from typing import Any, Protocol
 
@@ -12,7 +12,8 @@ import viser
 
 from app.format.colours import wheel_palette
 from app.format.load_unit import load_unit
-from app.format.parameters import refusal
+from app.format.markup import element
+from app.format.parameters import choice_words, refusal
 from app.panels.actions import Actions
 from app.panels.address_bar import AddressBar
 from app.panels.callbacks import by_user
@@ -23,6 +24,7 @@ from app.panels.notifications import Notifications
 from app.panels.page_layout import LEFT, PageLayout, Screen
 from app.panels.page_requests import carry_out
 from app.panels.page_setup import add_hints, add_page, apply_theme, store_visit, title_html
+from app.panels.palette import add_palette
 from app.panels.parameter_panel import ParameterPanel
 from app.panels.playback_panel import PlaybackPanel
 from app.panels.plot_panel import RUNS, PlotPanel
@@ -33,11 +35,12 @@ from app.panels.view_panel import ViewPanel
 from app.panels.wheel_card import WheelCard
 from app.runs.drive import DriveState
 from app.runs.playback import Playback
-from app.runs.request import Driven, Failed, Finished, Refused
+from app.runs.request import Driven, Failed, Finished, Refused, Request
 from app.tabs.road_profile import RoadAhead
 from app.view3d.mode_animation import PERIOD, ModeShow
 from model.analysis.ride import WheelState
 from model.config.config import Config, ConfigError
+from model.config.parameters import PARAMETER
 from model.config.validation import shorten
 from model.road.road import Road
 from model.simulation.trajectory import Trajectory, wheel_names
@@ -93,7 +96,7 @@ class Window:
         actions: Actions,
         make_view: Callable[[viser.ClientHandle, bool], VehicleView],
     ) -> None:
-        self._client, self._actions = client, actions
+        self._client, self._actions, self._presets = client, actions, presets
         self._dark = False  # until the browser tells its setting
         self._run: Trajectory | None = None
         self._baseline: Trajectory | None = None
@@ -130,6 +133,7 @@ class Window:
             )
             signs.asked.on_update(by_user(lambda event: carry_out(event.target.value, actions), actions.fail))
             self.address = AddressBar(gui)
+            self._opened, self._tabs_opened = gui.add_html(""), 0
             self._controls = ParameterPanel(gui, presets, preset, config, actions)
             with self._controls.middle:
                 self._folders = [gui.add_folder(name, expand_by_default=False) for name in FOLDERS]
@@ -152,6 +156,7 @@ class Window:
             self._view_panel = ViewPanel(gui, view, self._dark, actions)
             self.files = FilesPanel(gui, out, into, actions)
             add_shortcuts(gui, actions)
+            add_palette(gui, self._presets, actions)
             add_hints(gui)
         self._filled = True
 
@@ -343,6 +348,31 @@ class Window:
             return
         if self._controls.road_view.content != view:
             self._controls.road_view.content = view
+
+    # ── Parameters ──
+
+    def mark_changes(self, request: Request) -> None:
+        """Mark the parameters that a request changes in its preset."""
+        if self._filled:
+            self._controls.mark(request)
+
+    def lead_to(self, key: str) -> None:
+        """Lead the user to the control of a parameter."""
+        parameter = PARAMETER[key]
+        if self._run is not None and not parameter.applies_to(self._run.config.road.type):
+            roads = " or ".join(map(choice_words, parameter.roads))
+            self.say("Not on this road", f"{parameter.label} belongs to another road. Choose Road type: {roads}.")
+        elif self._filled:
+            self._controls.lead_to(key)
+
+    def set_first(self, keys: Sequence[str]) -> None:
+        """Have these parameters among the first sliders, besides those that always are."""
+        self._controls.set_first(keys)
+
+    def open_tab(self, tab: str) -> None:
+        """Bring a tab of the plots to the front."""
+        self._tabs_opened += 1
+        self._opened.content = str(element("trackride-tab", of=tab, count=str(self._tabs_opened)))
 
     # ── Looks ──
 

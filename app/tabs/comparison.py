@@ -37,21 +37,26 @@ def _named(row: Row) -> str:
 def _body(name: Content, whole: Row, wheels: Sequence[Row], compared: bool) -> Html:
     """A figure's line, and those of its wheels."""
     head = cell(element("button", name, type="button", aria_expanded="false") if wheels else name)
-    lines = [row([head, *_cells(whole, compared)], titled=False)]
-    lines += [row([one.wheel, *_cells(one, compared)], titled=False, class_="wheel") for one in wheels]
+    lines = [row([head, *_with_bar(whole, compared)], titled=False)]
+    lines += [row([one.wheel, *_with_bar(one, compared)], titled=False, class_="wheel") for one in wheels]
     change = 0.0 if whole.change is None or not whole.resolved else abs(whole.change)
     return element("tbody", *lines, data_figure=whole.figure, data_change=f"{change:.4g}")
 
 
-def _cells(row: Row, compared: bool) -> list[Content]:
-    """Now, baseline, change, and the change as a bar."""
+def cells(row: Row, compared: bool) -> list[Content]:
+    """Now, baseline and change."""
     now, baseline = row_texts(row)
     if not compared:
         return [now]
     sign = None
     if row.baseline is not None and row.now is not None:
         sign = "same" if not row.resolved else "more" if row.now > row.baseline else "less"
-    return [now, baseline, cell(change_text(row.change), class_=sign), cell(_bar(row), class_="bar")]
+    return [now, baseline, cell(change_text(row.change), class_=sign)]
+
+
+def _with_bar(row: Row, compared: bool) -> list[Content]:
+    """The same, and the change as a bar."""
+    return [*cells(row, compared), *([cell(_bar(row), class_="bar")] if compared else [])]
 
 
 def _bar(row: Row) -> Html:

@@ -205,7 +205,8 @@ class Row:
     now: float | None
     baseline: float | None
     change: float | None  # %, of the baseline; None where it means nothing
-    resolution: float = 0.0  # in the unit: a figure is told no finer than this
+    resolution: float = 0.0  # in the unit: a figure is told no finer than this, …
+    share: float = 0.005  # … and differs only by more than this share of it (see Figure)
 
     @property
     def label(self) -> str:
@@ -216,7 +217,7 @@ class Row:
         """Whether now and baseline differ by what the figure resolves, or more; False without both."""
         if self.now is None or self.baseline is None:
             return False
-        share = LABELLED[self.figure].share * max(abs(self.now), abs(self.baseline))
+        share = self.share * max(abs(self.now), abs(self.baseline))
         difference = abs(self.now - self.baseline)
         return difference > 0 and difference >= max(share, self.resolution)
 
@@ -284,7 +285,7 @@ def comparison(now: Trajectory, baseline: Trajectory | None) -> list[Row]:
         if same_time(figure.grows, *summaries):
             change = percent(value, reference, figure.least)
         resolution = sampling if figure.resolution == "sample" else figure.resolution
-        rows.append(Row(figure.label, wheel, figure.unit, value, reference, change, resolution))
+        rows.append(Row(figure.label, wheel, figure.unit, value, reference, change, resolution, figure.share))
     return rows
 
 

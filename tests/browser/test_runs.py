@@ -46,9 +46,8 @@ def test_from_a_pinned_vehicle_to_a_figure_that_proves_it(at_rest: Explorer) -> 
     page.get_by_role("tab", name="Runs").click()
     page.keyboard.press("b")
     expect(page.locator(".trackride-compared")).to_contain_text("Baseline ● Paper vehicle")
-    at_rest.fold("Suspension")
     before = at_rest.run_number()
-    at_rest.control("Road damping").fill("2.366")
+    at_rest.box("Road damping").fill("2.366")
     at_rest.wait_for_run(after=before)
 
     paper = load_config("paper")
@@ -67,7 +66,6 @@ def test_from_a_pinned_vehicle_to_a_figure_that_proves_it(at_rest: Explorer) -> 
 
     kept = page.get_by_text("Road damping 4.732 → 2.366 kN s/m")
     expect(kept.last).to_be_visible()
-    at_rest.fold("Suspension")
     at_rest.fold("Export")
     figure = download(at_rest, "Figure", "PNG")
     assert figure.suggested_filename == "paper-vehicle_road-damping-2.366-kn-s-m_figure.png"
