@@ -72,7 +72,7 @@ if (!customElements.get('trackride-rows')) {
       }, 300);
     }
   });
-  customElements.define('trackride-tab', class extends HTMLElement {
+  customElements.define('trackride-front', class extends HTMLElement {
     connectedCallback() {
       [...document.querySelectorAll('[role="tab"]')].find((tab) => tab.textContent === this.getAttribute('of'))?.click();
     }

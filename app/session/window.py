@@ -372,7 +372,7 @@ class Window:
     def open_tab(self, tab: str) -> None:
         """Bring a tab of the plots to the front."""
         self._tabs_opened += 1
-        self._opened.content = str(element("trackride-tab", of=tab, count=str(self._tabs_opened)))
+        self._opened.content = str(element("trackride-front", of=tab, count=str(self._tabs_opened)))
 
     # ── Looks ──
 
