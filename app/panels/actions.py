@@ -93,6 +93,9 @@ class Actions(Protocol):
     def compare(self, number: int) -> None:
         """Make a kept run the baseline."""
 
+    def tick_run(self, number: int) -> None:
+        """Show a kept run beside the one that is shown, or do so no more."""
+
     def delete(self, number: int) -> None:
         """Keep a run no more."""
 

@@ -13,7 +13,12 @@ from app.panels.plot_page import OTHER_KEY, TIME_KEY, peaks_html
 from app.plots.curves import TIME, Curve, Plot
 
 FONT = "11px system-ui, sans-serif"
-OPACITY = {"run": "", "baseline": "b0", "static": "c0"}  # of curves by kind, as the last byte of their colour
+OPACITY = {
+    "run": "",
+    "baseline": "b0",
+    "static": "c0",
+    "beside": "",
+}  # of curves by kind, as the last byte of their colour
 FADED = "38"
 WIDTH = 1  # px; the page makes 1.5 of it where a line is not pale (plots.js)
 DASH = {"baseline": (4, 3), "static": (1, 3)}

@@ -168,6 +168,9 @@ class Session:
     def compare(self, number: int) -> None:
         self.post(f"run {number}", lambda: self._workspace.compare(number))
 
+    def tick_run(self, number: int) -> None:
+        self.post(f"tick {number}", lambda: self._workspace.tick_run(number))
+
     def delete(self, number: int) -> None:
         self.post(f"run {number}", lambda: self._workspace.delete(number))
 

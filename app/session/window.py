@@ -33,6 +33,7 @@ from app.panels.shortcuts import add_shortcuts
 from app.panels.status_line import BUSY_DELAY, drive_facts, progress_line, run_line, status_line
 from app.panels.view_panel import ViewPanel
 from app.panels.wheel_card import WheelCard
+from app.plots.curves import Beside
 from app.runs.drive import DriveState
 from app.runs.playback import Playback
 from app.runs.request import Driven, Failed, Finished, Refused, Request
@@ -60,6 +61,8 @@ class VehicleView(Protocol):
     def draw(self, time: float) -> None: ...
 
     def show_ghost(self, trajectory: Trajectory | None) -> None: ...
+
+    def show_beside(self, runs: Sequence[tuple[Trajectory, str]]) -> None: ...
 
     @property
     def ghost_of_other_size(self) -> bool: ...
@@ -216,6 +219,12 @@ class Window:
             self._plot(self._plots.time)
         self.view.show_ghost(baseline)
         self._mind_the_ghost()
+
+    def show_beside(self, beside: tuple[Beside, ...]) -> None:
+        """Show these runs, too, from now on: their curves, and their vehicles as ghosts."""
+        self._end_mode()
+        self._plots.show_beside(beside)
+        self.view.show_beside([(other.run, other.colour) for other in beside])
 
     def _mind_the_ghost(self) -> None:
         """Say once why the baseline's vehicle is not seen."""

@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import Any
 
 from app.format.link import Link
+from app.plots.curves import Beside
 from app.runs.history import REST, RUN_COLOURS, Changes, Kept, Runs, run_name
 from app.runs.request import Finished, Request, first_request, same
 from app.runs.runner import Runner
@@ -19,6 +20,7 @@ from model.config.config import Config, ConfigError
 from model.simulation.trajectory import Trajectory
 
 COMPARE_EVERY = 0.3  # s from one table of figures to the next while runs follow each other and the table is seen…
+BESIDE = 8  # kept runs at most that are shown beside the present one
 CALM = 0.3  # s … or without another run when it is not
 
 
@@ -40,6 +42,7 @@ class Workspace:
         self._kept: Kept | None = None  # the same, once it is kept
         self._before_drive = ""  # name of the run whose figures stay while a drive is shown
         self._baseline: Kept | None = None
+        self._ticked: list[int] = []  # numbers of the kept runs that are shown beside
         self._compared = self._named = True  # the table of figures and the name belong to the run that is shown
         self._compared_at = 0.0  # when it was made, s
         self._news_at: float | None = (
@@ -125,8 +128,9 @@ class Workspace:
 
     @property
     def missing_run(self) -> Config | None:
-        """The configuration of the baseline, if its run has to be made again (see `made_again`); else None."""
-        return None if self._baseline is None or self._baseline.run is not None else self._baseline.config
+        """The configuration of the baseline or a ticked run that has to be made again (see `made_again`); else None."""
+        wanted = [*([] if self._baseline is None else [self._baseline]), *self._beside]
+        return next((kept.config for kept in wanted if kept.run is None), None)
 
     def news(self, now: float) -> str | None:
         """The text that the browser is to store, given once, when the user has rested; None: nothing new. `now`, s."""
@@ -197,9 +201,33 @@ class Workspace:
         if number in self._runs:
             self._set_baseline(self._runs[number])
 
+    def tick_run(self, number: int) -> None:
+        """Show a kept run beside the one that is shown, or do so no more."""
+        if number in self._ticked:
+            self._ticked.remove(number)
+        elif len(self._ticked) >= BESIDE:
+            self._window.say("Eight at most", f"{BESIDE} runs are shown beside this one. Take one away first.")
+        elif number in self._runs:
+            self._ticked.append(number)
+        self._show_beside()
+        self._show()
+
+    @property
+    def _beside(self) -> list[Kept]:
+        return [self._runs[number] for number in self._ticked if number in self._runs]
+
+    def _show_beside(self) -> None:
+        """Show those that are there; those of which only the configuration is left follow when they are made again."""
+        self._ticked = [kept.number for kept in self._beside]
+        shown = [Beside(kept.name, kept.colour, kept.run) for kept in self._beside if kept.run is not None]
+        self._window.show_beside(tuple(shown))
+        self._compared, self._compared_at = False, 0.0
+
     def delete(self, number: int) -> None:
         """Keep a run no more. If it is the baseline, it stays the baseline."""
         self._runs.delete(number)
+        if number in self._ticked:
+            self._show_beside()
         if self._kept is not None and self._kept.number == number:
             self._kept, self._rested = None, True  # so that it is not kept again at once
         self._note_news()
@@ -225,10 +253,15 @@ class Workspace:
         elif self._baseline is not None and self._baseline.config == config:
             self._window.say("No baseline", f"{self._baseline.name} cannot be run again.")
             self.clear_baseline()
+        else:
+            self._ticked = [kept.number for kept in self._beside if kept.config != config]
 
     def _complete(self, run: Trajectory) -> None:
         """Give the run to the kept run, and to the baseline, of which only the configuration was left."""
+        again = any(kept.run is None and kept.config == run.config for kept in self._beside)
         self._runs.complete(run)
+        if again:
+            self._show_beside()
         baseline = self._baseline
         if baseline is not None and baseline.run is None and baseline.config == run.config:
             self._set_baseline(replace(baseline, run=run))
@@ -257,7 +290,7 @@ class Workspace:
         return "" if self._good is None else run_name(self._good.request.base, self._good.trajectory.config)
 
     def _show(self) -> None:
-        self._window.runs.show(self._runs, self._name, self._kept, self._baseline, self._before_drive)
+        self._window.runs.show(self._runs, self._name, self._kept, self._baseline, self._before_drive, self._ticked)
 
     def _tell(self, now: float) -> None:
         """Show name and figures of the run, unless they are shown already."""
@@ -267,7 +300,8 @@ class Workspace:
             self._show()
             self._window.runs.show_name(self._name)
         if not self._compared:
-            self._window.runs.compare(self._good.trajectory, self.baseline)
+            beside = [Beside(kept.name, kept.colour, kept.run) for kept in self._beside if kept.run is not None]
+            self._window.runs.compare(self._good.trajectory, self.baseline, beside)
             self._compared, self._compared_at = True, now
 
     # ── Configurations ──

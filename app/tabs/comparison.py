@@ -6,26 +6,41 @@ wheels folded below. assets/runs.js unfolds them and puts the lines in another o
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
-from app.format.differences import change_text, row_texts
+from app.format.differences import NONE, change_text, row_texts
 from app.format.markup import Content, Html, cell, element, heading_cell, joined, row
 from model.analysis.figures import Row, overall
 
 WIDEST = 50.0  # %: a change of this size, or more, fills half of the bar
 
 
-def comparison_table(rows: Sequence[Row], compared: bool) -> str:
-    """HTML of the table of all figures, the vehicle's first, then its wheels'. compared: there is a baseline."""
-    bodies = [_body(_named(row), row, (), compared) for row in rows if not row.wheel]
+@dataclass(frozen=True)
+class Other:
+    """A run that is shown beside."""
+
+    name: str
+    colour: str  # CSS
+    rows: Sequence[Row]  # the present run's, with this one in the place of the baseline
+
+
+def comparison_table(rows: Sequence[Row], compared: bool, others: Sequence[Other] = ()) -> str:
+    """HTML of the table of all figures, the vehicle's first, then its wheels'. compared: there is a baseline.
+
+    others: a column for each.
+    """
+    beside = [_by_place(other.rows) for other in others]
+    bodies = [_body(_named(row), row, (), compared, beside) for row in rows if not row.wheel]
     for of in overall(rows):
         wheels = [row for row in rows if row.figure == of.row.figure and row.wheel]
         before = of.baseline_wheel if of.baseline_wheel != of.row.wheel and of.row.baseline is not None else ""
         which = f"{of.row.wheel}, before {before}" if before else of.row.wheel or "road wheels together"
         words = _named(of.row), " ", element("small", which)
-        bodies.append(_body(joined(words), of.row, wheels, compared))
+        bodies.append(_body(joined(words), of.row, wheels, compared, beside))
     heads = ("now", "baseline", "change", "") if compared else ("now",)
-    head = element("thead", row([heading_cell(name) for name in ("Figure", *heads)]))
+    dots = [heading_cell("●", style=f"color:{other.colour}", title=other.name) for other in others]
+    head = element("thead", row([*(heading_cell(name) for name in ("Figure", *heads)), *dots]))
     made = element("table", head, *bodies, class_="trackride-figures")
     return str(element("trackride-figures", made, compared="" if compared else None))
 
@@ -34,11 +49,25 @@ def _named(row: Row) -> str:
     return f"{row.figure}, {row.unit}" if row.unit else row.figure
 
 
-def _body(name: Content, whole: Row, wheels: Sequence[Row], compared: bool) -> Html:
+def _by_place(rows: Sequence[Row]) -> dict[tuple[str, str], Row]:
+    """By figure and wheel; under no wheel what a figure of each wheel comes to for all of them."""
+    return {(row.figure, row.wheel): row for row in rows} | {(of.row.figure, ""): of.row for of in overall(rows)}
+
+
+def _body(
+    name: Content, whole: Row, wheels: Sequence[Row], compared: bool, beside: Sequence[Mapping[tuple[str, str], Row]]
+) -> Html:
     """A figure's line, and those of its wheels."""
+
+    def others(wheel: str) -> list[Content]:
+        found = (other.get((whole.figure, wheel)) for other in beside)
+        return [NONE if row is None else row_texts(row)[1] for row in found]
+
     head = cell(element("button", name, type="button", aria_expanded="false") if wheels else name)
-    lines = [row([head, *_with_bar(whole, compared)], titled=False)]
-    lines += [row([one.wheel, *_with_bar(one, compared)], titled=False, class_="wheel") for one in wheels]
+    lines = [row([head, *_with_bar(whole, compared), *others("")], titled=False)]
+    lines += [
+        row([one.wheel, *_with_bar(one, compared), *others(one.wheel)], titled=False, class_="wheel") for one in wheels
+    ]
     change = 0.0 if whole.change is None or not whole.resolved else abs(whole.change)
     return element("tbody", *lines, data_figure=whole.figure, data_change=f"{change:.4g}")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from app.tabs.comparison import comparison_table
+from app.tabs.comparison import Other, comparison_table
 from model.analysis.figures import FIGURE, LOAD_COEFFICIENT, WHEEL_FIGURES, comparison
 from model.config.config import load_config
 from tests.app.conftest import make_run
@@ -59,3 +59,15 @@ def test_without_a_baseline_there_is_only_now() -> None:
     assert all(
         row.count("<td") == 2 for row in re.findall("<tr.*?</tr>", "".join(b for _, b in bodies(table).values()))
     )
+
+
+def test_each_run_beside_has_a_column() -> None:
+    run, other = make_run(), make_run(PAPER.replace({"drive.speed_kmh": 30, "vehicle.road_wheels.count": 4}))
+    beside = Other("Speed 15 → 30 km/h", "#1c6cb2", comparison(run, other))
+    table = comparison_table(comparison(run, None), False, [beside])
+    assert 'style="color:#1c6cb2" title="Speed 15 → 30 km/h"' in table
+    peak = bodies(table)["Peak load"][1]
+    cells = [re.findall("<td[^>]*>(.*?)</td>", row) for row in re.findall("<tr.*?</tr>", peak)]
+    assert cells[0][1:] == ["16.1", "30.7"]
+    assert cells[5][0] == "R5"
+    assert cells[5][2] == "–"  # it has four road wheels
