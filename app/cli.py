@@ -225,9 +225,9 @@ def paper(
 
 
 def _report(trajectory: Trajectory) -> None:
-    from model.analysis.ride import summary, warnings
+    from model.analysis.ride import Summary, warnings
 
-    of = summary(trajectory)
+    of = Summary(trajectory)
     output.print(_load_table(of))
     output.print(_figure_table(trajectory, of))
     for warning in warnings(trajectory):
@@ -239,7 +239,7 @@ def _load_table(of: Summary) -> Table:
     for heading in ("min", "mean", "max"):
         table.add_column(heading, justify="right")
     for name, *loads in zip(of.names, of.load_min, of.load_mean, of.load_max, strict=True):
-        table.add_row(name, *(f"{load:.0f}" for load in loads))
+        table.add_row(name, *(f"{load:z.0f}" for load in loads))
     return table
 
 
@@ -253,7 +253,7 @@ def _figure_table(trajectory: Trajectory, of: Summary) -> Table:
         value = values[figure.name]
         words = f", {of.seat.reaction}" if figure is WEIGHTED and of.seat is not None else ""
         worst = f", {'all road wheels' if figure.together else 'worst wheel'}" if figure.per_wheel else ""
-        table.add_row(figure.label + worst, "–" if value is None else f"{value:.4g} {figure.unit}{words}".rstrip())
+        table.add_row(figure.label + worst, "–" if value is None else f"{value:z.4g} {figure.unit}{words}".rstrip())
     table.add_row("Figures taken", f"{of.window.why}; {WHOLE}")
     work = trajectory.statistics
     for what, text in (

@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any
 import viser
 from rich.console import Console
 
+from app.format.assets import check_assets
 from app.session.error_log import Throttle
 from app.web.admission import MAX_TABS, Admission, Listening, OriginError
 from app.web.web_server import WebServer
@@ -171,12 +172,16 @@ def prepare() -> None:
 def serve(
     config: Config, preset: str, host: str = HOST, port: int = PORT, open_browser: bool = True, **admission: Any
 ) -> None:
-    """Run the explorer until Ctrl+C. Exits with a message when it cannot listen. admission: see Explorer."""
+    """Run the explorer until Ctrl+C. Exits with a message when it cannot listen, or lacks files of its page.
+
+    admission: see Explorer.
+    """
     warnings.filterwarnings("ignore", message="Queued a .* on a closed connection")
     console = Console(highlight=False, soft_wrap=True)
     try:
+        check_assets()
         explorer = Explorer(config, preset, host, port, **admission)
-    except ServerError as error:
+    except (ServerError, FileNotFoundError) as error:
         sys.exit(f"trackride: {error}")
     try:
         used = explorer.server.get_port()
@@ -198,8 +203,8 @@ def serve(
 
 def _warn(console: Console, explorer: Explorer) -> None:
     """Say who else can open the page, and how."""
-    if explorer.listening.everywhere:
-        console.print(f"From other machines: [bold]{explorer.address_at(socket.gethostname())}[/bold]")
+    if explorer.listening.everywhere and (host := explorer.listening.from_elsewhere):
+        console.print(f"From other machines: [bold]{explorer.address_at(host)}[/bold]", highlight=False)
     if explorer.with_token:
         who = "Who has this address, with its token, can open it from other machines."
     else:

@@ -3,6 +3,7 @@
 // happens when the server is lost.
 // Without it everything works and can be read, but typed values count key by key. `this` is the picture that runs this
 // script; the rules of page.css find the page and its panel by the names that they get here.
+if (!this.isConnected) return;  // viser has drawn the page anew meanwhile, with another picture
 this.parentElement.dataset.trackride = 'page';
 this.parentElement.parentElement.dataset.trackride = 'panel';
 // After a lost connection viser builds all anew in a page whose panels have their sizes already. The page is loaded
@@ -18,8 +19,10 @@ const set = (box, text) => {
 };
 const pass = (box) => box.dispatchEvent(new Event('input', {bubbles: true}));
 const tell = (name, text) => {
-  const id = document.getElementById('trackride-style').dataset[name];
-  const sign = document.querySelector(`label[for="${id}"]`).closest('[data-trackride="page"] ~ div').querySelector('input');
+  const id = document.getElementById('trackride-style')?.dataset[name];
+  const label = document.querySelector(`label[for="${id}"]`);
+  const sign = label?.closest('[data-trackride="page"] ~ div')?.querySelector('input');
+  if (!sign) return setTimeout(tell, 100, name, text);  // the page is still being built
   set(sign, text);
   pass(sign);
 };
@@ -36,12 +39,8 @@ window.trackrideInTurn ??= (() => {
 window.trackrideTell = tell;
 let asks = 0;
 window.trackrideAsk = (kind, content) => trackrideInTurn(() => tell('asked', JSON.stringify({kind, content, count: ++asks})));
-// What its address asks for comes first. viser, when it connects, drops a fragment that stands behind a query, but the
-// browser knows what it was opened with
-{
-  const opened = location.hash || new URL(performance.getEntriesByType('navigation')[0]?.name ?? location.href).hash;
-  if (opened.length > 1) trackrideAsk('link', opened.slice(1));
-}
+// What its address asked for when it was opened (head.html) comes first
+if (window.trackrideOpened) trackrideAsk('link', trackrideOpened);
 // A tab whose page is loaded anew goes on where it was, whatever other tabs of this browser have stored since
 trackrideInTurn(() => tell('visit', sessionStorage.getItem('trackride') ?? 'null'));
 if (!document.body.dataset.trackride) {
@@ -68,7 +67,7 @@ if (!document.body.dataset.trackride) {
   // A typed value counts at Enter, when the box is left, or after a pause, not key by key: until then React, which holds
   // the box's value in `defaultValue`, gets no word of it. What a box for numbers would misread (nothing, 4.7/2, a list,
   // many decimals) goes to the server as text, and the box shows what it showed before until the server knows better.
-  const PAUSE = 1000;  // ms
+  const PAUSE = 1500;  // ms
   const BOXES = '.mantine-NumberInput-input, .mantine-TextInput-input, .mantine-Textarea-input';
   const timers = new Map();  // of the boxes with a text that does not count yet
   const row = (part) => part.querySelector('label[for]') ? part : row(part.parentElement);

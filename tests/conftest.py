@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import settings
 from xdist.scheduler import LoadScopeScheduling
 
 # Read when NumPy is first imported: its threads make small matrices on a busy machine several times slower.
@@ -19,6 +20,10 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 # Whoever starts the tests in the background has their children ignore interrupts, some of which must end by one.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+# A suite that passes passes again: looking for what nobody has thought of is the soak's.
+settings.register_profile("same every time", derandomize=True)
+settings.load_profile("same every time")
 
 REFERENCE = Path(__file__).parent / "reference"
 ATTACK = Path(__file__).parent / "attack"  # configurations found at random that once came to grief
@@ -41,12 +46,18 @@ def full_disk() -> Callable[[], AbstractContextManager[None]]:
     return limited
 
 
+# Their tests take seconds, and those of a file share what took as long to make: each file is one process's.
+LONG = "tests/app/commands/", "tests/app/reports/", "tests/soak/"
+
+
 class BrowserApart(LoadScopeScheduling):
     """One process has all tests of the browser: they share one explorer and one tab. They come first, as the largest
-    group; the other process takes the rest, one by one, and whoever is done helps."""
+    group, then the files with long tests; the other process takes the rest, one by one, and whoever is done helps."""
 
     def _split_scope(self, nodeid: str) -> str:
-        return "browser" if nodeid.startswith("tests/browser/") else nodeid
+        if nodeid.startswith("tests/browser/"):
+            return "browser"
+        return nodeid.partition("::")[0] if nodeid.startswith(LONG) else nodeid
 
 
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> BrowserApart:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -54,24 +54,38 @@ def spreading(scheduler: str | None) -> Iterator[Spread]:
 
 @contextmanager
 def remembered(name: str, folder: Path, resume: bool, total: int, scheduler: str | None) -> Iterator[Memory]:
-    """Does an analysis's runs, about `total`, with a progress bar; leaves with what is wrong, or on Ctrl+C."""
+    """Does an analysis's runs, about `total`, with a progress bar; leaves with what is wrong, or on Ctrl+C.
+
+    Runs that were done are kept whatever ends it. A folder that was made for nothing is taken away again.
+    """
     check_folder(folder)
     from model.study.design import DesignError
-    from model.study.memory import Memory, StoppedError
+    from model.study.memory import Memory, StoppedError, part_of
 
-    with writing(folder):
+    part = part_of(folder / RUNS)
+    if not resume and part.exists() and part.stat().st_size:
+        fail(f"{part}: holds the runs of a study that was stopped; go on with --resume, or delete it")
+    made = [each for each in (folder, *folder.parents) if not each.exists()]
+    with spreading(scheduler) as spread, writing(folder), interrupt() as should_stop, counting(name, total) as count:
         folder.mkdir(parents=True, exist_ok=True)
-        with spreading(scheduler) as spread, interrupt() as should_stop, counting(name, total) as count:
+        try:
             memory = Memory(folder / RUNS, version("trackride"), resume, count, should_stop, spread)
-            try:
-                yield memory
-            except StoppedError:
-                kept = f"{len(memory.known)} runs are kept in {folder / RUNS}"
-                fail(f"Interrupted: {kept}; go on with --resume.", CANCELLED)
-            except DesignError as error:
-                fail(str(error))
-            finally:
-                memory.close()
+        except DesignError as error:
+            fail(str(error))
+        try:
+            yield memory
+            memory.finish()
+        except StoppedError:
+            fail(f"Interrupted: what was done is kept in {part}; go on with --resume.", CANCELLED)
+        except DesignError as error:
+            kept = f"\nThe runs are kept in {part}: --resume does not repeat them." if memory.known else ""
+            fail(f"{error}{kept}")
+        finally:
+            memory.close()
+            if not memory.known:
+                with suppress(OSError):  # of one that holds other files
+                    for each in made:
+                        each.rmdir()
 
 
 def write_results(folder: Path, files: Mapping[str, bytes]) -> None:

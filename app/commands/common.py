@@ -12,17 +12,23 @@ import tempfile
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from datetime import timedelta
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 from rich.console import Console
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from model.config.config import Config
     from model.simulation.trajectory import Trajectory
 
 BAD_INPUT, DIVERGED, CANCELLED = 2, 3, 130  # exit status
+TELL_EVERY = 10.0  # s between lines of progress where standard error is no terminal
+UNBROKEN = 200  # characters of a table's line where standard output is no terminal
 STOPPING = 1.5  # s that the explorer has to close its tabs after Ctrl+C
 
 output = Console(highlight=False)
@@ -32,6 +38,11 @@ ConfigArgument = Annotated[str, typer.Argument(metavar="CONFIG", help="YAML file
 SetOption = Annotated[
     list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change one value; may be repeated.")
 ]
+
+
+def print_table(table: Table) -> None:
+    """A table; nothing is broken to fit where standard output is no terminal."""
+    (output if output.is_terminal else Console(highlight=False, width=UNBROKEN)).print(table)
 
 
 def say(message: str, style: str = "") -> None:
@@ -131,7 +142,9 @@ def _check_writes_into(out: Path, folder: Path, option: str = "--out") -> None:
         with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError as error:
-        fail(f"{option} {out}: cannot write into the folder {folder}: {error.strerror}")
+        refused = isinstance(error, FileNotFoundError) and folder.exists()  # what is missing is the file to be made
+        reason = "the system lets nobody make files there" if refused else error.strerror
+        fail(f"{option} {out}: cannot write into the folder {folder}: {reason}")
 
 
 @contextmanager
@@ -145,9 +158,15 @@ def writing(out: Path) -> Iterator[None]:
 
 @contextmanager
 def progress(name: str) -> Iterator[Callable[[float], None] | None]:
-    """A progress bar on standard error while that is a terminal."""
+    """A progress bar on standard error; a line now and then where that is no terminal."""
     if not errors.is_terminal:
-        yield None
+        due = _now_and_then()
+
+        def tell(part: float) -> None:
+            if due():
+                say(f"{name}: {100 * part:.0f} %")
+
+        yield tell
         return
     from rich.markup import escape
     from rich.progress import Progress
@@ -159,9 +178,9 @@ def progress(name: str) -> Iterator[Callable[[float], None] | None]:
 
 @contextmanager
 def counting(name: str, total: int, done: int = 0) -> Iterator[Callable[[], None]]:
-    """The same for so many runs, with their rate and the time left; called after each."""
+    """The same for about so many runs, with their rate and the time left; called after each."""
     if not errors.is_terminal:
-        yield lambda: None
+        yield _counting_in_lines(name, total, done)
         return
     from rich.markup import escape
     from rich.progress import (
@@ -183,6 +202,35 @@ def counting(name: str, total: int, done: int = 0) -> Iterator[Callable[[], None
     with Progress(*parts, console=errors, transient=True) as bar:
         task = bar.add_task(escape(name), total=total, completed=done)
         yield lambda: bar.advance(task)
+
+
+def _counting_in_lines(name: str, total: int, done: int) -> Callable[[], None]:
+    """Called after each run."""
+    due, began, before = _now_and_then(), monotonic(), done
+
+    def count() -> None:
+        nonlocal done
+        done += 1
+        if due():
+            rate = (done - before) / max(monotonic() - began, 1e-9)
+            left = timedelta(seconds=round(max(total - done, 0) / rate))
+            say(f"{name}: {done} of {max(total, done)} runs, {rate:.3g} runs/s, {left} left")
+
+    return count
+
+
+def _now_and_then() -> Callable[[], bool]:
+    """Whether TELL_EVERY has passed since it last had."""
+    last = monotonic()
+
+    def due() -> bool:
+        nonlocal last
+        if monotonic() - last < TELL_EVERY:
+            return False
+        last = monotonic()
+        return True
+
+    return due
 
 
 @contextmanager

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -18,6 +19,7 @@ from app.commands.common import (
     fail,
     interrupt,
     output,
+    print_table,
     say,
     writing,
 )
@@ -28,8 +30,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
 EXAMPLE = (
-    "Example: trackride fit m113 --measured record.csv --over vehicle.road_suspension.damping=1000:20000 "
-    "--over vehicle.imaginary_suspension.stiffness=1000:100000 --low-pass 20 --out build/fit"
+    "Example: trackride fit half_round --measured record.csv --over vehicle.road_suspension.damping=1000:20000 "
+    "--low-pass 20 --out build/fit. A record to try it on: trackride run half_round "
+    "--set vehicle.road_suspension.damping=6000 --out record.csv"
 )
 
 
@@ -54,15 +57,19 @@ def fit(
 ) -> None:
     """Fit values to a measured vertical acceleration by least squares, with confidence intervals at 95 %.
 
-    When the record began and by how much its sensor is off are found too. Writes YAML of the fitted vehicle, and
-    the curves laid over each other in time and in the spectrum. Exit status: 0 done; 2 bad input; 130 interrupted.
+    CONFIG and --set give the road and the speed of the record. When the record began and by how much its sensor is
+    off are found too; up is positive. Writes YAML of the fitted vehicle, and the curves laid over each other in time
+    and in the spectrum. A fit takes some hundred runs, so that there is no --resume. Exit status: 0 done; 2 bad
+    input; 130 interrupted, nothing written.
     """
     base = configuration(config, changes)
     ranges = only_ranges(parsed(over, "--over", base))
     check_folder(out)
+    if low_pass is not None and not isfinite(low_pass):
+        fail("--low-pass: give a number of Hz, such as 20")
     if measured is None:
         fail("give --measured FILE")
-    from app.reports.studies.fit import files, table
+    from app.reports.studies.fit import doubts, files, table, told
     from model.analysis import signals
     from model.config.profile_points import FILE_LIMIT
     from model.files import read_file
@@ -77,7 +84,7 @@ def fit(
     except DesignError as error:
         fail(f"--measured {measured}: {error}")
     point = signals.seat(base) if seat else signals.CENTRE_OF_MASS
-    runs = fitting.SPREAD * len(ranges) + 10 * (len(ranges) + 1)
+    runs = fitting.SPREAD * len(ranges) + 15 * fitting.STARTS * (len(ranges) + 1)
     with spreading(scheduler) as everywhere, interrupt() as should_stop, counting(base.name, runs) as count:
 
         def spread(work: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:
@@ -91,13 +98,10 @@ def fit(
             found = fitting.fit(base, record, ranges, low_pass, point, seed, spread)
         except DesignError as error:
             fail(str(error))
-    for key, at_end in zip(found.keys, found.at_end, strict=True):
-        if at_end:
-            say(f"{key} lies at an end of its range: widen it, or do not trust its interval.", style="yellow")
-    for key, of, found_value in zip(found.keys, ranges, found.estimates, strict=True):
-        if found_value.high - found_value.low > of.high - of.low:
-            say(f"{key} cannot be told from this record: its interval is wider than its range.", style="yellow")
-    output.print(table(found))
+    for doubt in doubts(found, ranges):
+        say(doubt, style="yellow")
+    print_table(table(found, ranges))
+    output.print(told(found), markup=False, soft_wrap=True)
     with writing(out):
         out.mkdir(parents=True, exist_ok=True)
-    write_results(out, files(found, base, ranges, measured.name, low_pass))
+    write_results(out, files(found, base, ranges, measured.name))

@@ -8,9 +8,9 @@ from typing import Annotated
 import typer
 
 from app.commands.analysis import FolderOption, ResumeOption, SchedulerOption, remembered, write_results
-from app.commands.common import DIVERGED, SetOption, configuration, fail, output, say
+from app.commands.common import DIVERGED, SetOption, configuration, fail, print_table, say
 
-EXAMPLE = "Example: trackride limits paper m113 marder --seeds 3 --out build/limits"
+EXAMPLE = "Example: trackride limits paper m113 marder --seeds 1 --out build/limits"
 
 
 def limits(
@@ -44,7 +44,7 @@ def limits(
         try:
             read = read_profile(file)
         except ConfigError as error:
-            fail(f"--profile {error}")
+            fail(f"--profile: {str(error).removeprefix('road.file: ')}")
         say(f"{file.name}: {read.said}.")
         measured[file.name] = read.points
     from app.reports.studies.limits import files, table
@@ -58,7 +58,7 @@ def limits(
     runs = sum(len(SPEEDS) + found.ROUNDS for _, grounds in vehicles for _ in grounds)
     with remembered(", ".join(base.name for base in bases), out, resume, runs, scheduler) as evaluate:
         limited = found.limits(vehicles, evaluate)
-        if not any(value is not None for limit in limited for value in limit.values):
-            fail("No run came to its end.", DIVERGED)
-    output.print(table(limited, bases))
+    if not any(value is not None for limit in limited for value in limit.values):
+        fail("No run came to its end.", DIVERGED)
+    print_table(table(limited, bases))
     write_results(out, files(limited, bases))

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from app.commands.analysis import FolderOption, OverOption, ResumeOption, SchedulerOption, remembered, write_results
-from app.commands.common import ConfigArgument, SetOption, configuration, fail, output
+from app.commands.common import ConfigArgument, SetOption, configuration, fail, print_table
 from app.commands.sensitivity import only_ranges
 from app.commands.sweep import SeedOption, chosen_figures, parsed
 
@@ -44,14 +44,14 @@ def optimise(
     """Find the values that make a figure small, or the front of two figures that cannot both be smallest.
 
     A damper that is best on one road only is no answer: give several with --roads. Writes YAML files of the best,
-    the table and the figure. Exit status: 0 done; 2 bad input, or no point keeps the bounds; 130 interrupted, the
-    runs kept for --resume.
+    the table and the figure. Exit status: 0 done; 2 bad input, or no point keeps the bounds, the runs kept for
+    --resume with other bounds; 130 interrupted, the runs kept for --resume.
     """
     base = configuration(config, changes)
     ranges = only_ranges(parsed(over, "--over", base))
-    if len(minimise) not in (1, 2):
+    goals = tuple(goal for name in minimise if name.strip() for goal in chosen_figures(name, base, "--minimise"))
+    if len(goals) not in (1, 2) or len(set(goals)) < len(goals):
         fail("give --minimise FIGURE once, or twice for the front of two figures")
-    goals = tuple(chosen_figures(name, base, "--minimise")[0] for name in minimise)
     from app.reports.studies.optimum import files, table
     from model.study import optimum
     from model.study.design import DesignError
@@ -64,5 +64,5 @@ def optimise(
     members = min(max(optimum.PER_KEY * len(ranges), optimum.LEAST), optimum.MOST)
     with remembered(base.name, out, resume, members * (generations + 1) * len(bases), scheduler) as evaluate:
         found = optimum.optimise(bases, ranges, goals, bounds, mean, generations, seed, evaluate)
-    output.print(table(found))
+    print_table(table(found))
     write_results(out, files(found, bases, ranges, mean))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.commands.analysis import FolderOption, OverOption, ResumeOption, SchedulerOption, remembered, write_results
-from app.commands.common import ConfigArgument, SetOption, configuration, fail, output, say
+from app.commands.common import ConfigArgument, SetOption, configuration, fail, print_table, say
 from app.commands.sweep import SeedOption, chosen_figures, parsed
 
 if TYPE_CHECKING:
@@ -48,8 +48,8 @@ def sensitivity(
     with remembered(base.name, out, resume, runs, scheduler) as evaluate:
         found = found_sensitivity(base, ranges, chosen, trajectories, samples, seed, evaluate)
     if found.lost:
-        say(f"{found.lost} of {found.runs} runs did not come to their end; they count as the mean.", style="yellow")
-    output.print(table(found))
+        say(f"Incomplete: {found.lost} of {found.runs} runs; what these lack counts as the mean.", style="yellow")
+    print_table(table(found))
     write_results(out, files(found, base, ranges))
 
 

@@ -47,7 +47,8 @@ VaryOption = Annotated[
     ),
 ]
 FiguresOption = Annotated[
-    str, typer.Option(help="Names of figures, with commas between; peak_load.R1 is that of a wheel. Left out: all.")
+    str,
+    typer.Option(help="Names of figures, with commas between; peak_load.R1: of a wheel. Left out: all, of all wheels."),
 ]
 SeedOption = Annotated[int, typer.Option(min=0, help="Of the sample: the same seed gives the same runs.")]
 
@@ -82,13 +83,16 @@ def sweep(
         if scheduler is not None:
             fail("--keep-runs: the runs of a cluster are not here; leave out --keep-runs or --scheduler")
     varied, wanted = parsed(vary, "--vary", base), chosen_figures(figures, base)
+    try:
+        study = make_study(base, varied, wanted, sample, seed)
+    except DesignError as error:
+        fail(str(error))
+    _check_space(study, out, keep_runs)
+    if not resume:
+        _check_unfinished(out)
     with spreading(scheduler) as spread:
+        made = Made.by(study, version("trackride"), shlex.join(["trackride", *sys.argv[1:]]))
         try:
-            study = make_study(base, varied, wanted, sample, seed)
-            _check_space(study, out, keep_runs)
-            made = Made.by(study, version("trackride"), shlex.join(["trackride", *sys.argv[1:]]))
-            if not resume and (part := out.with_name(f"{out.name}.part")).exists():
-                fail(f"{part}: holds the runs of a study that was stopped; go on with --resume, or delete it")
             with writing(out):
                 table = TableWriter(out, study, made, go_on=resume)
         except DesignError as error:
@@ -107,7 +111,7 @@ def sweep(
                         break
             table.finish()
     done = table.done - before
-    lost = f"; {done - complete} did not come to their end: see the column status" if complete < done else ""
+    lost = f"; incomplete: {done - complete}, see the column status" if complete < done else ""
     output.print(f"{table.done} of {len(study.points)} runs are in {out}{lost}.", markup=False, soft_wrap=True)
     if table.done < len(study.points):
         say("Interrupted: go on with --resume.", style="red")
@@ -140,6 +144,20 @@ def chosen_figures(text: str, base: Config, option: str = "--figures") -> tuple[
         return checked_figures([name for name in text.split(",") if name.strip()], base)
     except DesignError as error:
         fail(f"{option} {error}")
+
+
+def _check_unfinished(out: Path) -> None:
+    """Leave where a study that was stopped would lose its runs."""
+    from model.study.table import part_of, progress_of
+
+    if (part := part_of(out)).exists():
+        fail(f"{part}: holds the runs of a study that was stopped; go on with --resume, or delete it")
+    done, total = progress_of(out)
+    if done < total:
+        fail(
+            f"{out}: holds {done} of {total} runs of a study that was stopped; go on with --resume, delete it, or give "
+            "another name"
+        )
 
 
 def _keeper(folder: Path | None) -> Callable[[int, Trajectory], None] | None:

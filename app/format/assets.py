@@ -5,6 +5,11 @@ from __future__ import annotations
 from functools import cache
 from importlib import resources
 
+EXPLORER = (  # what its page needs
+    *("page.js", "page.css", "plots.js", "plots.css", "study.js", "study.css"),
+    *("wheel.css", "runs.css", "modal.css"),
+)
+
 
 @cache
 def asset(name: str) -> str:
@@ -17,3 +22,9 @@ def asset(name: str) -> str:
     if not file.is_file():
         raise FileNotFoundError(f"This installation of Trackride lacks assets/{name}: install it anew.")
     return file.read_text(encoding="utf-8")
+
+
+def check_assets() -> None:
+    """Raises FileNotFoundError, which names it, when this installation lacks a file that the explorer's page needs."""
+    for name in EXPLORER:
+        asset(name)

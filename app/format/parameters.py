@@ -31,7 +31,7 @@ def hint(parameter: Parameter) -> str:
     if parameter.growth:
         parts.append(f"When it grows: {parameter.growth[0].lower()}{parameter.growth[1:]}")
     if parameter.per_wheel:
-        parts.append("One value for all road wheels, or one for each with commas between, front first.")
+        parts.append("One value for all road wheels, or one for each with commas or blanks between, front first.")
     facts = [f"Symbol {parameter.symbol}"] if parameter.symbol else []
     facts += [f"unit {parameter.shown_unit}"] if parameter.shown_unit else []
     facts += [f"from {parameter.source}"] if parameter.source.startswith(("Table", "section")) else []
@@ -89,7 +89,10 @@ def file_value(parameter: Parameter, text: str) -> Any:
     """What a typed text means; the text itself where it means nothing, for the configuration to refuse."""
     if not text.strip():
         return None
-    parts = [part.strip() for part in text.strip(" ,;[]()").replace(";", ",").split(",")]
+    bare = text.strip(" ,;[]()")
+    parts = [part.strip() for part in bare.replace(";", ",").split(",")]
+    if len(parts) == 1 and (parameter.per_wheel or parameter.kind == "list"):
+        parts = bare.split()
     if not all(NUMBER.fullmatch(part) for part in parts):
         return text
     values = tuple(file_number(parameter, float(part)) for part in parts)
@@ -122,6 +125,8 @@ def refusal(fault: Fault, given: Any, config: Config) -> str:
         return f"{parameter.label}: {fault.message}."
     if fault.value == "nothing":
         return f"{parameter.label}: a value is needed. Give {allowed(parameter)}."
+    if isinstance(given, tuple) and not parameter.per_wheel and parameter.kind != "list":
+        return f"{parameter.label}: one number is needed, with a point: 1.5, not 1,5. Give {allowed(parameter)}."
     if isinstance(given, tuple) and all(isinstance(number, int | float) for number in given):
         what = f"{shown_text(parameter, given)} {parameter.shown_unit}".strip()
         return f"{parameter.label}: {what} is not allowed. Give {allowed(parameter)}, for each road wheel."

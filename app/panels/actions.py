@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
+from app.runs.study_choice import StudyChoice
 from model.config.config import Config
 
 
@@ -150,6 +151,17 @@ class Actions(Protocol):
 
     def show_mode(self) -> None:
         """Show the mode that the tab's box says instead of the run."""
+
+    # Study
+
+    def choose_study(self, choice: StudyChoice) -> None:
+        """Show this in the tab "Study" and on the sliders."""
+
+    def take_record(self, name: str, text: str) -> None:
+        """Compare runs with a measured acceleration: the text of a CSV file."""
+
+    def steer(self, key: str, value: Any) -> None:
+        """Give a parameter another value, as in a file, and let its control follow: the user moves it elsewhere."""
 
     # Downloads
 

@@ -104,8 +104,8 @@ class Control:
         as_list = isinstance(value, tuple) and self._list is not None
         if self._list is not None:
             self._list.visible, self._one.visible = as_list, not as_list
-            if as_list and self.listed_value != value:
-                self._list.value = shown_text(self.parameter, value)
+            if as_list and self._list.value != shown_text(self.parameter, value):
+                self._list.value = shown_text(self.parameter, value)  # also where it was typed in another way
         self._fit(value)
         if as_list or self.value == value:
             return

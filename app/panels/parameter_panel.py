@@ -55,6 +55,7 @@ class ParameterPanel:
         self._rows, self._changes, self._sought = (gui.add_html("") for _ in range(3))
         self._searches = 0
         self._marked: Request | None = None  # whose changes are marked
+        self.matters = gui.add_html("")  # for others to fill
         steps = gui.add_button_group(
             "Parameters",
             ("Undo", "Redo", "Reset"),
@@ -149,6 +150,11 @@ class ParameterPanel:
             self._actions.refuse_text(text)
         else:
             self._actions.enter(control.parameter.key, file_value(control.parameter, text))
+
+    @property
+    def sliders(self) -> dict[str, str]:
+        """viser's names of the sliders, by key."""
+        return {key: control.box for key, control in self._controls.items() if control.parameter.what_if}
 
     def __getitem__(self, key: str) -> Control:
         return self._controls[key]

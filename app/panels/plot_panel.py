@@ -34,8 +34,8 @@ from model.simulation.trajectory import Trajectory
 CALM = 0.3  # s
 DRIVE_EVERY = 1.0  # s
 HEADLINE = 30  # px that the headline above the plots of the ride takes
-LOADS, RIDE, SPECTRUM, LOAD_MAP, RUNS, TRUST, ABOUT = TABS = (
-    "Loads", "Ride", "Spectrum", "Load map", "Runs", "Trust", "About",
+LOADS, RIDE, SPECTRUM, LOAD_MAP, RUNS, STUDY, TRUST, ABOUT = TABS = (
+    "Loads", "Ride", "Spectrum", "Load map", "Runs", "Study", "Trust", "About",
 )  # fmt: skip
 
 
@@ -51,7 +51,7 @@ class Part:
 
 
 class PlotPanel:
-    """Tabs in a panel of a client's interface. `runs_tab` is left empty, for others to fill."""
+    """Tabs in a panel of a client's interface. `runs_tab` and `study_tab` are left empty, for others to fill."""
 
     def __init__(self, client: viser.ClientHandle, panel: Any, page_height: int, dark: bool, actions: Actions) -> None:
         self._client, self._page_height, self._dark = client, page_height, dark
@@ -67,7 +67,7 @@ class PlotPanel:
         self.time = 0.0  # of the time cursor, s
         gui = client.gui
         tabs = {name: panel.add_tab(name) for name in TABS}
-        self.runs_tab = tabs[RUNS]
+        self.runs_tab, self.study_tab = tabs[RUNS], tabs[STUDY]
         for name, tab in tabs.items():
             with tab:
                 gui.add_html(tab_html(name), order=float("-inf"))

@@ -19,7 +19,7 @@ class Turns:
 
     def __init__(self, places: int, longest_wait: float = LONGEST_WAIT) -> None:
         """places: how many work at a time; longest_wait: s."""
-        self._longest_wait = longest_wait
+        self._places, self._longest_wait = places, longest_wait
         self._lock = threading.Lock()  # of the next two
         self._free = places  # negative: that many more are at work
         self._waiting: deque[threading.Lock] = deque()  # each is released when its turn has come
@@ -32,6 +32,11 @@ class Turns:
             yield
         finally:
             self._leave()
+
+    @property
+    def busy(self) -> bool:
+        """Whether anybody is at work."""
+        return self._free < self._places
 
     def pass_on(self) -> None:
         """In a turn: let those who wait go first."""
@@ -62,4 +67,5 @@ class Turns:
 
 
 COMPUTING = Turns(max((os.cpu_count() or 1) - 1, 1))  # runs; one core is left to those who show them
+STUDYING = Turns(1)  # to do some runs of a study, on all cores, while nobody else computes
 SHOWING = Turns(1)  # to put a run, or an instant of it, onto a page is work in Python, which does one thing at a time

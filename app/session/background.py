@@ -38,6 +38,10 @@ class BackgroundJob:
         """Whether the job is to end early."""
         return self._stop.is_set()
 
+    def pause(self, seconds: float) -> None:
+        """In a job: wait so long, s, or until it is to end early."""
+        self._stop.wait(seconds)
+
     def close(self) -> None:
         """Stop the job and wait for its end, but not long."""
         self.stop()

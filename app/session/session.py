@@ -18,12 +18,16 @@ from typing import Any
 import viser
 
 from app.panels.road_parts import with_part, without_last
+from app.plots.study_data import Data
 from app.runs.playback import Playback, time_to_look
 from app.runs.request import Driven, Failed, Finished, Outcome, Refused, Request, Simulate, first_request
 from app.runs.runner import Runner
+from app.runs.study_choice import StudyChoice
 from app.runs.turns import SHOWING
 from app.session.address import Address
 from app.session.error_log import Seldom, kind_of
+from app.session.studies import Studies
+from app.session.study_work import Record, Situation
 from app.session.transfers import Download, Transfers
 from app.session.window import VehicleView, Window
 from app.session.workspace import Workspace
@@ -31,6 +35,9 @@ from app.view3d.view import View3D
 from model.config.config import Config
 from model.simulation.simulate import simulate
 from model.simulation.trajectory import Trajectory
+from model.study import running as study_running
+from model.study.design import DesignError
+from model.study.fit import read_record
 
 VIEW_RATE = 30.0  # Hz: the 3-D view
 TEXT_RATE = 10.0  # Hz: numbers, time slider, time cursors …
@@ -56,8 +63,9 @@ class Session:
         *,
         run: Simulate = simulate,
         make_view: Callable[[viser.ClientHandle, bool], VehicleView] = View3D,
+        study: Callable[..., study_running.Outcome] = study_running.outcome,
     ) -> None:
-        """presets: name -> configuration, among them `preset`; config: what to run first."""
+        """presets: name -> configuration, among them `preset`; config: what to run first; study: runs of studies."""
         self._lock = threading.RLock()  # of the next eight
         self._playback = Playback()
         self._driving = False  # on and on, instead of a run
@@ -84,6 +92,15 @@ class Session:
         self._workspace = Workspace(self._window, self._runner, self._presets)
         self._address = Address(self._window, self._workspace, presets)
         self._transfers = Transfers(client, self, self._window, self._workspace, run)
+        self._record: Record | None = None  # measured, for studies
+        self._studies = Studies(
+            presets,
+            lambda: self._runner.latest.number,
+            lambda: self._playback.playing,
+            self._show_study,
+            self.fail,
+            study,
+        )
         self._thread = threading.Thread(target=self._show, name="trackride-view", daemon=True)
         self._thread.start()
 
@@ -233,6 +250,25 @@ class Session:
     def redraw_spectrum(self) -> None:
         self.post("spectrum", lambda: self._window.redraw_spectrum())
 
+    def choose_study(self, choice: StudyChoice) -> None:
+        def choose() -> None:
+            self._studies.choice = choice
+
+        self.post("study", choose)
+
+    def take_record(self, name: str, text: str) -> None:
+        def take() -> None:
+            try:
+                self._record = Record(name, read_record(text))
+            except DesignError as error:
+                self._window.say("No record", f"{name}: {error}.")
+
+        self.post("record", take)
+
+    def steer(self, key: str, value: Any) -> None:
+        self.change(key, value)
+        self.post(f"control {key}", lambda: self._window.follow(key, value))
+
     def show_mode(self) -> None:
         """Pause the run, and show the mode in its place."""
         with self._lock:
@@ -334,6 +370,7 @@ class Session:
         self._wake.set()
         self._runner.close()
         self._transfers.close()
+        self._studies.close()
         self._thread.join()
 
     # ── What is seen: on the view's thread from here on ──
@@ -439,11 +476,32 @@ class Session:
         self._workspace.tick(now)
         self._address.tick(now)
         self._window.mark_changes(self._workspace.present)
+        self._study(now, driving)
         missing, news = self._workspace.missing_run, self._workspace.news(now)
         if missing is not None:
             self._transfers.run_again(missing)
         if news is not None:
             self._transfers.remember(news)
+
+    def _study(self, now: float, driving: bool) -> None:
+        """Let studies begin or end, as it suits what the user does."""
+        latest, good, baseline = self._runner.latest, self._good, self._workspace.baseline
+        self._studies.tick(
+            now,
+            Situation(
+                number=latest.number,
+                shown=good.request.number if good is not None else -1,
+                touched=bool(latest.touched),
+                config=good.trajectory.config if isinstance(good, Finished) else None,
+                baseline=None if baseline is None else baseline.config,
+                front=self._window.study_in_front,
+                record=self._record,
+                hurries=driving or not self._in_view or self._runner.under_way() is not None,
+            ),
+        )
+
+    def _show_study(self, kind: str, data: Data) -> None:
+        self.post(f"study {kind}", lambda: self._window.study.show(kind, data))
 
     def _export(self, what: str) -> None:
         run, files = self.shown, self._window.files

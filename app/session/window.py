@@ -27,10 +27,11 @@ from app.panels.page_setup import add_hints, add_page, apply_theme, store_visit,
 from app.panels.palette import add_palette
 from app.panels.parameter_panel import ParameterPanel
 from app.panels.playback_panel import PlaybackPanel
-from app.panels.plot_panel import RUNS, PlotPanel
+from app.panels.plot_panel import RUNS, STUDY, PlotPanel
 from app.panels.runs_panel import RunsPanel
 from app.panels.shortcuts import add_shortcuts
 from app.panels.status_line import BUSY_DELAY, drive_facts, progress_line, run_line, status_line
+from app.panels.study_panel import StudyPanel
 from app.panels.view_panel import ViewPanel
 from app.panels.wheel_card import WheelCard
 from app.plots.curves import Beside
@@ -143,6 +144,7 @@ class Window:
             self._plots_panel = gui.add_panel()
             self._plots = PlotPanel(client, self._plots_panel, layout.page_height, self._dark, actions)
             self.runs = RunsPanel(gui, self._plots.runs_tab, actions)
+            self.study = StudyPanel(gui, self._plots.study_tab, self._controls, actions)
             self._plots_panel.dock_right()
             self._playback = PlaybackPanel(gui, actions)
             self._card = WheelCard(gui, actions)
@@ -422,6 +424,15 @@ class Window:
     def runs_in_front(self) -> bool:
         """Whether the tab of the runs is seen."""
         return RUNS in self._plots.in_front
+
+    @property
+    def study_in_front(self) -> bool:
+        """Whether the tab of studies is seen."""
+        return STUDY in self._plots.in_front
+
+    def follow(self, key: str, value: Any) -> None:
+        """Let the control of a parameter show a value that the user has set elsewhere."""
+        self._controls[key].show(value)
 
     def fit_page(self) -> None:
         """Change the sizes of the panels when the size of the page has changed."""

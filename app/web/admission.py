@@ -68,6 +68,19 @@ class Listening:
             return "127.0.0.1" if IPv4Address(0) in self.addresses else "[::1]"
         return f"[{self.host}]" if ":" in self.host else self.host
 
+    @property
+    def from_elsewhere(self) -> str | None:
+        """The address by which other machines reach it, where it listens on all; None where there is no network."""
+        fourth = IPv4Address(0) in self.addresses
+        family, beyond = (socket.AF_INET, "192.0.2.1") if fourth else (socket.AF_INET6, "2001:db8::1")
+        with socket.socket(family, socket.SOCK_DGRAM) as probe:
+            try:
+                probe.connect((beyond, 9))  # sends nothing: asks only which way it would go
+            except OSError:
+                return None
+            own = probe.getsockname()[0]
+        return own if fourth else f"[{own}]"
+
 
 class Admission:
     """Answers those who may not come in; the others get no answer from it. For viser's event loop."""

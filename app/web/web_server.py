@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import gzip
 import io
+import re
 from collections.abc import Callable, Iterator
+from functools import cache
 from typing import Any
+from urllib.parse import quote
 
 import viser
 import viser._messages as messages
@@ -15,6 +19,7 @@ from viser.infra import WebsockClientConnection
 from websockets.asyncio.server import ServerConnection
 from websockets.http11 import Request, Response
 
+from app.format.assets import asset
 from app.web.admission import Admission
 
 UNHEARD = (  # what a tab may say to all of viser's tabs, those that come later too, and what would open a tunnel
@@ -22,6 +27,8 @@ UNHEARD = (  # what a tab may say to all of viser's tabs, those that come later 
     messages.ShareUrlRequest,
     messages.ShareUrlDisconnect,
 )
+
+VISERS = r'<link\s+rel="icon".*?/>|<title>.*?</title>|<meta name="description".*?/>'  # in the head of its page
 
 Answer = Callable[[ServerConnection, Request], Response | None]
 
@@ -48,7 +55,10 @@ def _asked_first(answer: Answer) -> Iterator[None]:
 
         def ask(connection: ServerConnection, request: Request) -> Response | None:
             response = answer(connection, request)
-            return process_request(connection, request) if response is None else response
+            if response is None:
+                response = process_request(connection, request)
+                _head(response)
+            return response
 
         return serve(*arguments, process_request=ask, **named)
 
@@ -59,6 +69,29 @@ def _asked_first(answer: Answer) -> Iterator[None]:
         websocket_server.serve = serve  # type: ignore[misc]
     if not asks:
         raise RuntimeError("this version of viser starts its server in another way: nobody would be turned away")
+
+
+def _head(response: Response | None) -> None:
+    """Give viser's page our title and icon, and hide its own panel until ours stand."""
+    if response is None or not response.body or not response.headers.get("Content-Type", "").startswith("text/html"):
+        return
+    response.body = _with_head(bytes(response.body), response.headers.get("Content-Encoding") == "gzip")
+    if "Content-Length" in response.headers:
+        del response.headers["Content-Length"]
+        response.headers["Content-Length"] = str(len(response.body))
+
+
+@cache
+def _with_head(page: bytes, packed: bool) -> bytes:
+    """The page, packed as it was, with assets/head.html and assets/icon.svg in place of viser's title and icon."""
+    text = (gzip.decompress(page) if packed else page).decode()
+    icon = f'<link rel="icon" href="data:image/svg+xml,{quote(asset("icon.svg").strip())}">'
+    head, rest = re.split(r"(?=<script)", text, maxsplit=1)
+    head = re.sub(
+        r"<link\s+rel=\"icon\".*?/>|<title>.*?</title>|<meta name=\"description\".*?/>", "", head, flags=re.DOTALL
+    )
+    ours = (head + icon + asset("head.html") + rest).encode()
+    return gzip.compress(ours) if packed else ours
 
 
 def _make_safe(connection: WebsockClientConnection) -> None:

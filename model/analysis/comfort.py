@@ -7,14 +7,13 @@ at rest; the figures are taken from its window (signals.py).
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import cached_property, lru_cache, partial
 
 import numpy as np
 from scipy.fft import irfft, rfft
 
 from model.analysis.signals import CENTRE_OF_MASS, Point, Window, point_acceleration, window
-from model.simulation.trajectory import Trajectory
+from model.simulation.trajectory import Motion
 
 LEAST_RATE = 200.0  # samples a second below which there are no figures: the weighting reaches up to 100 Hz
 DECAY = 10.0  # s in which all filters have forgotten: the slowest, of 0.4 Hz, to 2e-8
@@ -40,18 +39,68 @@ REACTIONS = (
 Filter = Callable[[np.ndarray], np.ndarray]  # s = iω (K,), 1/s -> gain (K,), complex
 
 
-@dataclass(frozen=True)
 class Comfort:
-    """Figures of the ride at one point of the hull."""
+    """Figures of the ride at one point of the hull, each computed when it is first asked for."""
 
-    window: Window  # from which they are taken
-    vertical: float  # m/s², rms weighted by W_k
-    fore_aft: float  # m/s², rms weighted by W_d
-    crest_factor: float | None  # of the vertical one, peak / rms; None where nothing moves
-    dose: float  # VDV, m/s^1.75: (∫ a_w⁴ dt)^¼ of the vertical one; it grows with time
-    transient: float  # MTVV, m/s²: largest running rms over a second of the vertical one
-    shock: float  # g: largest vertical acceleration in either direction, behind a low-pass of 30 Hz
-    absorbed_power: float  # W, mean, of the vertical acceleration
+    def __init__(self, motion: Motion, point: Point, taken: Window) -> None:
+        """Of a run of at least one sample; taken: its window."""
+        self.window = taken  # from which they are taken
+        self._rate = motion.config.simulation.output_rate
+        self._all = len(motion.t)
+        self._samples = taken.samples(motion.t)
+        acceleration = point_acceleration(motion, point).T
+        self._length, (self._along, self._up) = _spectrum(acceleration, self._rate)
+
+    def _through(self, spectrum: np.ndarray, gain: Filter) -> np.ndarray:
+        """The samples in the window of what a filter makes of a signal with this spectrum."""
+        gained = spectrum * _gain(self._length, self._rate, gain)
+        return irfft(gained, self._length, overwrite_x=True)[: self._all][self._samples]
+
+    @cached_property
+    def _felt(self) -> np.ndarray:
+        """m/s², vertical, weighted by W_k."""
+        return self._through(self._up, W_K)
+
+    @cached_property
+    def _energy(self) -> np.ndarray:
+        return self._felt**2
+
+    @cached_property
+    def vertical(self) -> float:
+        """m/s², rms weighted by W_k."""
+        return float(np.sqrt(np.mean(self._energy)))
+
+    @cached_property
+    def fore_aft(self) -> float:
+        """m/s², rms weighted by W_d."""
+        return float(np.sqrt(np.mean(self._through(self._along, W_D) ** 2)))
+
+    @property
+    def crest_factor(self) -> float | None:
+        """Of the vertical one, peak / rms; None where nothing moves."""
+        return float(np.abs(self._felt).max()) / self.vertical if self.vertical > 0 else None
+
+    @property
+    def dose(self) -> float:
+        """VDV, m/s^1.75: (∫ a_w⁴ dt)^¼ of the vertical one; it grows with time."""
+        return float((np.sum(self._energy**2) / self._rate) ** 0.25)
+
+    @property
+    def transient(self) -> float:
+        """MTVV, m/s²: largest running rms over a second of the vertical one."""
+        return float(running_rms(self._felt, self._rate).max())
+
+    @cached_property
+    def shock(self) -> float:
+        """g: largest vertical acceleration in either direction, behind a low-pass of 30 Hz."""
+        gained = self._up * _gain(self._length, self._rate, low_pass)
+        finer = irfft(gained, FINER * self._length, overwrite_x=True)[: FINER * self._all] * FINER
+        return float(np.abs(finer[FINER * self._samples.start : FINER * self._samples.stop]).max()) / G
+
+    @cached_property
+    def absorbed_power(self) -> float:
+        """W, mean, of the vertical acceleration."""
+        return float(np.mean(self._through(self._up, absorption) ** 2)) / FOOT**2
 
     @property
     def total(self) -> float:
@@ -60,8 +109,8 @@ class Comfort:
 
     @property
     def reaction(self) -> str:
-        """ISO 2631-1's word for the total."""
-        return reaction(self.total)
+        """ISO 2631-1's word for the total; none for a run that does not come to what is uneven."""
+        return reaction(self.total) if self.window.reached else "not reached"
 
 
 def reaction(acceleration: float) -> str:
@@ -69,33 +118,14 @@ def reaction(acceleration: float) -> str:
     return next(word for least, word in REACTIONS if acceleration >= least)
 
 
-def ride_comfort(trajectory: Trajectory, point: Point = CENTRE_OF_MASS, taken: Window | None = None) -> Comfort | None:
+def ride_comfort(motion: Motion, point: Point = CENTRE_OF_MASS, taken: Window | None = None) -> Comfort | None:
     """The figures of a run of at least one sample, at a point of the hull; None where it has too few samples a second.
 
     taken: the run's window, where it is at hand.
     """
-    rate = trajectory.config.simulation.output_rate
-    if rate < LEAST_RATE:
+    if motion.config.simulation.output_rate < LEAST_RATE:
         return None
-    taken = window(trajectory) if taken is None else taken
-    counts = taken.samples(trajectory.t)
-    samples = len(trajectory.t)
-    length, (along, up) = _spectrum(point_acceleration(trajectory, point).T, rate)
-    parts = np.array([up, along, up]) * _gains(length, rate, W_K, W_D, absorption)
-    felt, pushed, power = irfft(parts, length, overwrite_x=True)[:, :samples][:, counts]
-    shock = irfft(up * _gains(length, rate, low_pass)[0], FINER * length, overwrite_x=True)[: FINER * samples] * FINER
-    energy = felt**2
-    rms = float(np.sqrt(np.mean(energy)))
-    return Comfort(
-        window=taken,
-        vertical=rms,
-        fore_aft=float(np.sqrt(np.mean(pushed**2))),
-        crest_factor=float(np.abs(felt).max()) / rms if rms > 0 else None,
-        dose=float((np.sum(energy**2) / rate) ** 0.25),
-        transient=float(running_rms(felt, rate).max()),
-        shock=float(np.abs(shock[FINER * counts.start : FINER * counts.stop]).max()) / G,
-        absorbed_power=float(np.mean(power**2)) / FOOT**2,
-    )
+    return Comfort(motion, point, window(motion) if taken is None else taken)
 
 
 def filtered(signal: np.ndarray, rate: float, gain: Filter) -> np.ndarray:
@@ -105,7 +135,7 @@ def filtered(signal: np.ndarray, rate: float, gain: Filter) -> np.ndarray:
     sampled values would bend.
     """
     length, spectrum = _spectrum(signal, rate)
-    return irfft(spectrum * _gains(length, rate, gain)[0], length)[: len(signal)]
+    return irfft(spectrum * _gain(length, rate, gain), length)[: len(signal)]
 
 
 def _spectrum(signals: np.ndarray, rate: float) -> tuple[int, np.ndarray]:
@@ -115,10 +145,9 @@ def _spectrum(signals: np.ndarray, rate: float) -> tuple[int, np.ndarray]:
 
 
 @lru_cache(maxsize=8)
-def _gains(length: int, rate: float, *gains: Filter) -> np.ndarray:
-    """(…, K) what filters do to each frequency of such a spectrum: runs of about the same length share it."""
-    s = 2j * np.pi * np.fft.rfftfreq(length, 1 / rate)
-    return np.array([gain(s) for gain in gains])
+def _gain(length: int, rate: float, gain: Filter) -> np.ndarray:
+    """(K,) what a filter does to each frequency of such a spectrum: runs of about the same length share it."""
+    return gain(2j * np.pi * np.fft.rfftfreq(length, 1 / rate))
 
 
 def running_rms(signal: np.ndarray, rate: float) -> np.ndarray:

@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 
 from model.analysis.comfort import Comfort
-from model.analysis.ride import Summary, summary
+from model.analysis.ride import Summary
 from model.analysis.signals import same_window
 from model.simulation.trajectory import Trajectory
 
@@ -30,6 +30,7 @@ class Figure:
     meaning: str
     of: Callable[[Summary], Reading]  # in the unit; of each wheel where it is per wheel, road wheels first
     per_wheel: bool = False
+    road_wheels_only: bool = False  # where it is per wheel
     better: Literal["smaller", "larger"] | None = "smaller"  # None: neither, as such
     least: float = 1e-3  # in the unit: a baseline smaller than this is as good as nothing
     share: float = 0.005  # of the figure: a finer difference is not resolved, …
@@ -144,6 +145,7 @@ TRAVEL = Figure(
     "of each road wheel in the hull, from its lowest to its highest place in the whole run",
     lambda of: 1e3 * (of.travel_up - of.travel_down),
     per_wheel=True,
+    road_wheels_only=True,
     better=None,
     least=1e-2,
 )
@@ -222,27 +224,34 @@ class Row:
         return difference > 0 and difference >= max(share, self.resolution)
 
 
-def figures_by_name(of: Summary) -> dict[str, float | None]:
-    """All figures; of those per wheel each wheel's, "peak_load.R1", and as "peak_load" the worst wheel's.
+def figure_named(name: str, of: Summary) -> float | None:
+    """A figure by its name: of each wheel "peak_load.R1", and as "peak_load" the worst wheel's.
 
-    Of time in the air and lift-offs it is what all road wheels come to together. What cannot be told is None.
+    Of time in the air and lift-offs the worst is what all road wheels come to together. None: it cannot be told, or
+    there is no such wheel.
     """
+    name, _, wheel = name.partition(".")
+    figure = FIGURE[name]
+    reading = figure.of(of)
+    if not isinstance(reading, np.ndarray):
+        return reading
+    wheels = _of_wheels(of, reading)
+    return wheels.get(wheel) if wheel else _worst(figure, wheels)
+
+
+def figures_by_name(of: Summary) -> dict[str, float | None]:
+    """All figures, of those per wheel each wheel's and the worst wheel's: see figure_named."""
     named: dict[str, float | None] = {}
-    each: dict[Figure, dict[str, float | None]] = {figure: {} for figure in WHEEL_FIGURES}
-    for (figure, wheel), value in _values(of, FIGURES).items():
-        named[f"{figure.name}.{wheel}" if wheel else figure.name] = value
-        if wheel:
-            each[figure][wheel] = value
-    return named | {figure.name: _of_all(figure, values)[0] for figure, values in each.items()}
-
-
-def _of_all(figure: Figure, values: Mapping[str, float | None]) -> tuple[float | None, str]:
-    """What a figure of each wheel comes to for all of them, and the worst wheel, where it is that wheel's."""
-    told = {wheel: value for wheel, value in values.items() if value is not None}
-    if figure.together:
-        return sum(value for wheel, value in told.items() if wheel.startswith("R")), ""
-    worst = max(told, key=lambda wheel: told[wheel], default="")
-    return told.get(worst), worst
+    worst: dict[str, float | None] = {}
+    for figure in FIGURES:
+        reading = figure.of(of)
+        if isinstance(reading, np.ndarray):
+            wheels = _of_wheels(of, reading)
+            named |= {f"{figure.name}.{wheel}": value for wheel, value in wheels.items()}
+            worst[figure.name] = _worst(figure, wheels)
+        else:
+            named[figure.name] = reading
+    return named | worst
 
 
 @dataclass(frozen=True)
@@ -258,8 +267,8 @@ def overall(rows: Sequence[Row]) -> list[Overall]:
     found = []
     for label in dict.fromkeys(row.figure for row in rows if row.wheel):
         mine, figure = [row for row in rows if row.figure == label and row.wheel], LABELLED[label]
-        now, wheel = _of_all(figure, {row.wheel: row.now for row in mine})
-        baseline, before = _of_all(figure, {row.wheel: row.baseline for row in mine})
+        now, wheel = _overall(figure, {row.wheel: row.now for row in mine})
+        baseline, before = _overall(figure, {row.wheel: row.baseline for row in mine})
         compared = any(row.baseline is not None for row in mine)
         reference = baseline if compared else None
         comparable = any(row.change is not None for row in mine)  # the runs are as long, where that matters
@@ -275,7 +284,7 @@ def comparison(now: Trajectory, baseline: Trajectory | None) -> list[Row]:
     """
     runs = [now] if baseline is None else [now, baseline]
     sampling = max(1 / run.config.simulation.output_rate for run in runs)
-    summaries = [summary(run) for run in runs]
+    summaries = [Summary(run) for run in runs]
     present, *others = (_values(of, RIDE_FIGURES) for of in summaries)
     other: Mapping[tuple[Figure, str], float | None] = others[0] if others else {}
     rows = []
@@ -324,8 +333,26 @@ def _values(of: Summary, figures: tuple[Figure, ...]) -> dict[tuple[Figure, str]
     for figure in figures:
         reading = figure.of(of)
         if isinstance(reading, np.ndarray):
-            wheels = zip(of.names, reading.tolist(), strict=False)
-            found |= {(figure, name): value for name, value in wheels if isfinite(value)}
+            found |= {(figure, name): value for name, value in _of_wheels(of, reading).items()}
         else:
             found[figure, ""] = reading
     return found
+
+
+def _of_wheels(of: Summary, reading: np.ndarray) -> dict[str, float]:
+    """A reading of each wheel by the wheel's name, where it can be told."""
+    return {name: value for name, value in zip(of.names, reading.tolist(), strict=False) if isfinite(value)}
+
+
+def _worst(figure: Figure, wheels: Mapping[str, float]) -> float | None:
+    """Of all wheels; None where it can be told of none."""
+    if figure.together:
+        return float(np.sum([value for wheel, value in wheels.items() if wheel.startswith("R")]))
+    return max(wheels.values(), default=None)
+
+
+def _overall(figure: Figure, values: Mapping[str, float | None]) -> tuple[float | None, str]:
+    """Of all wheels, and the worst of them where it is that wheel's."""
+    told = {wheel: value for wheel, value in values.items() if value is not None}
+    worst = "" if figure.together else max(told, key=lambda wheel: told[wheel], default="")
+    return _worst(figure, told), worst

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -21,9 +21,10 @@ from model.dynamics.vehicle import System
 from model.road.random_road import longest
 from model.road.road import Road, profile_end, profile_start
 from model.simulation.accuracy import APART_NOTED, ENERGY_NOTED, advice, energy_missing, joints_apart
-from model.simulation.trajectory import Trajectory, wheel_names
+from model.simulation.trajectory import Motion, Trajectory, wheel_names
 
 ARM_LIMIT = np.radians(45)  # turn of a road arm beyond which the model is doubtful
+LEAN_LIMIT = 10.0  # °, of the hull at rest, beyond which a reader is warned
 SINKING_LIMIT = 0.1  # penetration, as a share of the wheel's radius
 FLOOR_STEP = 0.01  # m between points at which the hull's floor is held against the road
 FEW_WAVES = 0.65  # times the hull's slowest mode at which the longest waves are met: from there on pitch is too small …
@@ -33,34 +34,137 @@ STANDING = {"road": FlatRoad(), "drive": Drive(), "simulation": Simulation()}  #
 IN_PHASE = 0.02  # how close to a whole number of waves the wheel gaps must come
 
 
-@dataclass(frozen=True)
 class Summary:
-    """Figures of a run. W wheels in the order of `names`, road wheels 1…n first; SI, radians.
+    """Figures of a run of at least one sample, each computed when it is first asked for. W wheels in the order of
+    `names`, road wheels 1…n first; SI, radians.
 
     What is smallest, largest or counted is so in the whole run; all else is taken from its window.
     """
 
-    names: list[str]
-    window: Window
-    duration: float  # s, of the whole run
-    load_min: np.ndarray  # (W,) N
-    load_mean: np.ndarray  # (W,) N
-    load_max: np.ndarray  # (W,) N
-    load_rms: np.ndarray  # (W,) N
-    load_coefficient: np.ndarray  # (W,) dynamic load coefficient, 0…; see there
-    air_time: np.ndarray  # (W,) s without load
-    lift_offs: np.ndarray  # (W,) how often a wheel lost its load
-    travel_down: np.ndarray  # (n,) m, lowest wheel centre relative to the hull, from the static pose; ≤ 0
-    travel_up: np.ndarray  # (n,) m, highest; ≥ 0
-    acceleration_rms: float  # m/s², vertical, of the hull's centre of mass
-    acceleration_peak: float  # m/s², the largest in either direction
-    pitch_low: float  # rad; the nose is up where it is positive
-    pitch_high: float  # rad
-    seat: Comfort | None  # of the driver; None where there are too few samples a second
-    imaginary_share: float  # mean over time of Σ load of imaginary wheels / Σ load of all
-    drift: float  # m, by which joints were apart at worst
-    energy_error: float | None  # energy not accounted for, as a share of what was turned over; None: not known
-    real_time_factor: float  # simulated time / computing time
+    def __init__(self, run: Motion) -> None:
+        self._run = run
+
+    @cached_property
+    def names(self) -> list[str]:
+        return wheel_names(self._run.system)
+
+    @cached_property
+    def window(self) -> Window:
+        return window(self._run)
+
+    @property
+    def duration(self) -> float:
+        """s, of the whole run."""
+        return float(self._run.t[-1] - self._run.t[0])
+
+    @cached_property
+    def _samples(self) -> slice:
+        """Those in the window."""
+        return self.window.samples(self._run.t)
+
+    @cached_property
+    def _load(self) -> np.ndarray:
+        """(N, W) N, laid out so that sums over time run along rows."""
+        return np.ascontiguousarray(self._run.normal_load.T).T
+
+    @cached_property
+    def _counted(self) -> np.ndarray:
+        """The same in the window."""
+        return self._load[self._samples]
+
+    @property
+    def load_min(self) -> np.ndarray:
+        """(W,) N."""
+        return self._load.min(axis=0)
+
+    @cached_property
+    def load_mean(self) -> np.ndarray:
+        """(W,) N."""
+        return self._counted.mean(axis=0)
+
+    @property
+    def load_max(self) -> np.ndarray:
+        """(W,) N."""
+        return peak_load(self._run)
+
+    @cached_property
+    def load_rms(self) -> np.ndarray:
+        """(W,) N."""
+        return np.sqrt(np.mean(self._counted**2, axis=0))
+
+    @cached_property
+    def load_coefficient(self) -> np.ndarray:
+        """(W,) dynamic load coefficient, 0…; see there."""
+        return dynamic_load_coefficient(self._counted, self._run.static_load)
+
+    @property
+    def air_time(self) -> np.ndarray:
+        """(W,) s without load."""
+        return air_time(self._run)
+
+    @property
+    def lift_offs(self) -> np.ndarray:
+        """(W,) how often a wheel lost its load."""
+        return lift_offs(self._load)
+
+    @cached_property
+    def _travel(self) -> np.ndarray:
+        return suspension_travel(self._run)
+
+    @property
+    def travel_down(self) -> np.ndarray:
+        """(n,) m, lowest wheel centre relative to the hull, from the static pose; ≤ 0."""
+        return self._travel.min(axis=0)
+
+    @property
+    def travel_up(self) -> np.ndarray:
+        """(n,) m, highest; ≥ 0."""
+        return self._travel.max(axis=0)
+
+    @property
+    def acceleration_rms(self) -> float:
+        """m/s², vertical, of the hull's centre of mass."""
+        return float(np.sqrt(np.mean(self._run.a[self._samples, self._run.system.chassis, 1] ** 2)))
+
+    @property
+    def acceleration_peak(self) -> float:
+        """m/s², the largest in either direction."""
+        return peak_acceleration(self._run)
+
+    @property
+    def pitch_low(self) -> float:
+        """rad; the nose is up where it is positive."""
+        return float(self._run.q[:, self._run.system.chassis, 2].min())
+
+    @property
+    def pitch_high(self) -> float:
+        """rad."""
+        return float(self._run.q[:, self._run.system.chassis, 2].max())
+
+    @cached_property
+    def seat(self) -> Comfort | None:
+        """Of the driver; None where there are too few samples a second."""
+        return ride_comfort(self._run, seat(self._run.config), self.window)
+
+    @property
+    def imaginary_share(self) -> float:
+        """Mean over time of Σ load of imaginary wheels / Σ load of all."""
+        return imaginary_share(self._counted, self._run.system.n)
+
+    @property
+    def drift(self) -> float:
+        """m, by which joints were apart at worst."""
+        return float(self._run.constraint_residual.max())
+
+    @property
+    def energy_error(self) -> float | None:
+        """Energy not accounted for, as a share of what was turned over; None: not known."""
+        return self._run.energy_error
+
+    @property
+    def real_time_factor(self) -> float:
+        """Simulated time / computing time."""
+        return float(self._run.t[-1]) / self._run.statistics.seconds
 
 
 @dataclass(frozen=True)
@@ -100,47 +204,14 @@ class RideWarning:
         return f"{self.what}. {self.meaning}"
 
 
-def summary(trajectory: Trajectory) -> Summary:
-    """The figures of a run of at least one sample."""
-    system, taken = trajectory.system, window(trajectory)
-    counts = taken.samples(trajectory.t)
-    load = np.ascontiguousarray(trajectory.normal_load.T).T  # laid out so that sums over time run along rows
-    counted = load[counts]
-    travel = suspension_travel(trajectory)
-    pitch = trajectory.q[:, system.chassis, 2]
-    return Summary(
-        names=wheel_names(system),
-        window=taken,
-        duration=float(trajectory.t[-1] - trajectory.t[0]),
-        load_min=load.min(axis=0),
-        load_mean=counted.mean(axis=0),
-        load_max=peak_load(trajectory),
-        load_rms=np.sqrt(np.mean(counted**2, axis=0)),
-        load_coefficient=dynamic_load_coefficient(counted, trajectory.static_load),
-        air_time=air_time(trajectory),
-        lift_offs=lift_offs(load),
-        travel_down=travel.min(axis=0),
-        travel_up=travel.max(axis=0),
-        acceleration_rms=float(np.sqrt(np.mean(trajectory.a[counts, system.chassis, 1] ** 2))),
-        acceleration_peak=peak_acceleration(trajectory),
-        pitch_low=float(pitch.min()),
-        pitch_high=float(pitch.max()),
-        seat=ride_comfort(trajectory, seat(trajectory.config), taken),
-        imaginary_share=imaginary_share(counted, system.n),
-        drift=float(trajectory.constraint_residual.max()),
-        energy_error=trajectory.energy_error,
-        real_time_factor=float(trajectory.t[-1]) / trajectory.statistics.seconds,
-    )
-
-
-def peak_load(trajectory: Trajectory) -> np.ndarray:
+def peak_load(motion: Motion) -> np.ndarray:
     """(W,) N: the largest load of each wheel."""
-    return trajectory.peaks.load
+    return motion.peaks.load
 
 
-def air_time(trajectory: Trajectory) -> np.ndarray:
+def air_time(motion: Motion) -> np.ndarray:
     """(W,) s for which each wheel has no load."""
-    return trajectory.peaks.air_time
+    return motion.peaks.air_time
 
 
 def lift_offs(load: np.ndarray) -> np.ndarray:
@@ -148,21 +219,21 @@ def lift_offs(load: np.ndarray) -> np.ndarray:
     return np.count_nonzero((load[1:] <= 0) & (load[:-1] > 0), axis=0)
 
 
-def peak_acceleration(trajectory: Trajectory) -> float:
+def peak_acceleration(motion: Motion) -> float:
     """The largest vertical acceleration of the hull's centre of mass in either direction, m/s²."""
-    return float(trajectory.peaks.acceleration)
+    return float(motion.peaks.acceleration)
 
 
-def suspension_travel(trajectory: Trajectory) -> np.ndarray:
+def suspension_travel(motion: Motion) -> np.ndarray:
     """(N, n) m: rise of each road wheel's centre in the hull's frame, from the static pose: that at t = 0."""
-    system, q = trajectory.system, trajectory.q
-    if trajectory.t[0] > 0:  # a stretch of a drive, whose parameters may have changed since its start
+    system, q = motion.system, motion.q
+    if motion.t[0] > 0:  # a stretch of a drive, whose parameters may have changed since its start
         static = system.q_design
         with suppress(NoEquilibriumError):
             static = rest_pose(system)[0]
         q = np.concatenate([static[None], q])
     height = wheel_heights(system, q)
-    return height[-len(trajectory.t) :] - height[0]
+    return height[-len(motion.t) :] - height[0]
 
 
 def wheel_heights(system: System, q: np.ndarray) -> np.ndarray:
@@ -177,14 +248,20 @@ def imaginary_share(load: np.ndarray, road_wheels: int) -> float:
 
     load: (N, W) N, of so many road wheels and then of imaginary ones.
     """
-    share, grounded = imaginary_shares(load, road_wheels), load.sum(axis=1) > 0
+    total, share = _shares(load, road_wheels)
+    grounded = total > 0
     return float(np.mean(share[grounded])) if grounded.any() else 0.0
 
 
 def imaginary_shares(load: np.ndarray, road_wheels: int) -> np.ndarray:
     """(N,) the same at each sample; 0 with all wheels in the air."""
+    return _shares(load, road_wheels)[1]
+
+
+def _shares(load: np.ndarray, road_wheels: int) -> tuple[np.ndarray, np.ndarray]:
+    """(N,) N, the load of all wheels; and the share of it that imaginary ones carry."""
     total, imaginary = load.sum(axis=1), load[:, road_wheels:].sum(axis=1)
-    return imaginary / np.where(total > 0, total, 1.0)
+    return total, imaginary / np.where(total > 0, total, 1.0)
 
 
 def dynamic_load_coefficient(load: np.ndarray, static_load: np.ndarray) -> np.ndarray:
@@ -271,6 +348,7 @@ def motion_warnings(trajectory: Trajectory) -> list[RideWarning]:
     """Those of the warnings that need no road."""
     return [
         *_inexact(trajectory),
+        *_leaning(trajectory),
         *_arms_turned_far(trajectory),
         *_vehicle_in_the_air(trajectory),
         *_wheels_in_phase(trajectory),
@@ -320,6 +398,17 @@ def _inexact(trajectory: Trajectory) -> Iterator[RideWarning]:
     if found:
         words = " and ".join(found)
         yield RideWarning(f"The run is not exact: {words}", advice(trajectory.config.simulation))
+
+
+def _leaning(trajectory: Trajectory) -> Iterator[RideWarning]:
+    """Of the rest pose, where the run begins."""
+    lean = np.degrees(trajectory.q[0, trajectory.system.chassis, 2]) if trajectory.t[0] == 0 else 0.0
+    if abs(lean) > LEAN_LIMIT:
+        yield RideWarning(
+            f"The hull leans {'back' if lean > 0 else 'for'}wards by {abs(lean):.3g}° at rest",
+            "Its springs hardly hold it, or the centre of mass is far from the wheels' middle: stiffen the suspension, "
+            "or move the wheels (vehicle.road_wheels.offset).",
+        )
 
 
 def _arms_turned_far(trajectory: Trajectory) -> Iterator[RideWarning]:
@@ -415,11 +504,13 @@ def _long_waves_missing(trajectory: Trajectory) -> Iterator[RideWarning]:
     speed = float(trajectory.system.v_ref)
     enough = np.ceil(speed / (ENOUGH_WAVES * swing) / WAVE_STEP) * WAVE_STEP
     enough = min(float(enough), PARAMETER["road.longest_wave"].high)
+    shortest = min(road.length for road in roads if isinstance(road, RandomRoad))
     if speed / wave > FEW_WAVES * swing and wave < enough:
         yield RideWarning(
             f"At {3.6 * speed:.3g} km/h the random road's longest waves, {wave:g} m, are too short for the pitch",
             f"They are met {speed / wave:.2f} times a second; by itself the hull swings at {swing:.2f} Hz, and slower "
-            f"waves would pitch it, too. Set longest_wave to {enough:g} m, and the road's length to no less.",
+            f"waves would pitch it, too. Set longest_wave to {enough:g} m"
+            + (f", and the road's length, {shortest:g} m, to no less." if shortest < enough else "."),
         )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from model.config.config import Config, FlatRoad, ProfileRoad, RandomRoad, SimpleRoad, SineRoad, SumRoad
 from model.road.road import build_road, profile_of
-from model.simulation.trajectory import Trajectory
+from model.simulation.trajectory import Motion
 
 SETTLING = 2.0  # s after the last wheel has come to the full waves, in which the start dies away
 SHORTEST = 2.5  # s of waves or of a measured profile from which figures can be told
@@ -54,22 +54,22 @@ def seat(config: Config) -> Point:
     return config.vehicle.seat.x, config.vehicle.seat.y
 
 
-def point_acceleration(trajectory: Trajectory, point: Point = CENTRE_OF_MASS) -> np.ndarray:
+def point_acceleration(motion: Motion, point: Point = CENTRE_OF_MASS) -> np.ndarray:
     """(N, 2) m/s²: acceleration of a point fixed to the hull, forward and up along the world's axes.
 
     The point goes with the hull as a rigid body: a + θ̈ × r − θ̇² r, r the way to it from the centre of mass.
     """
-    hull = trajectory.system.chassis
-    pitch = trajectory.q[:, hull, 2]
-    along, up, growth = np.ascontiguousarray(trajectory.a[:, hull].T)
-    square = trajectory.v[:, hull, 2] ** 2
+    hull = motion.system.chassis
+    pitch = motion.q[:, hull, 2]
+    along, up, growth = np.ascontiguousarray(motion.a[:, hull].T)
+    square = motion.v[:, hull, 2] ** 2
     x, y = point
     cos, sin = np.cos(pitch), np.sin(pitch)
     r_x, r_y = cos * x - sin * y, sin * x + cos * y
     return np.array([along - growth * r_y - square * r_x, up + growth * r_x - square * r_y]).T
 
 
-def window(trajectory: Trajectory) -> Window:
+def window(motion: Motion) -> Window:
     """The stretch of a run of at least one sample that its figures are taken from.
 
     Waves (sine or random, in a sum too) go on: from when the last road wheel is on the full waves and the start has
@@ -77,31 +77,31 @@ def window(trajectory: Trajectory) -> Window:
     measured profile comes to an end: from the first wheel's contact until the last wheel is off it and the hull has
     settled, so that a longer run has the same figures. A level road, and a stretch of a drive, count as a whole.
     """
-    start, end = float(trajectory.t[0]), float(trajectory.t[-1])
+    start, end = float(motion.t[0]), float(motion.t[-1])
     if start > 0:
         return Window(start, end, "over this stretch of the drive")
-    road = trajectory.config.road
+    road = motion.config.road
     parts: list[SimpleRoad] = list(road.parts) if isinstance(road, SumRoad) else [road]
     if any(isinstance(part, SineRoad | RandomRoad) for part in parts):
-        return _on_waves(trajectory, parts)
-    uneven = build_road(trajectory.config).uneven
+        return _on_waves(motion, parts)
+    uneven = build_road(motion.config).uneven
     if uneven is None:
         return Window(start, end, "over the whole run")
     measured = any(isinstance(part, ProfileRoad) for part in parts)
     several = sum(not isinstance(part, FlatRoad) for part in parts) > 1
-    return _over(trajectory, uneven, "profile" if measured else "obstacles" if several else "obstacle", measured)
+    return _over(motion, uneven, "profile" if measured else "obstacles" if several else "obstacle", measured)
 
 
-def _on_waves(trajectory: Trajectory, parts: list[SimpleRoad]) -> Window:
+def _on_waves(motion: Motion, parts: list[SimpleRoad]) -> Window:
     """In a run that is too short at least half of it."""
-    wheels, end = trajectory.config.vehicle.road_wheels, float(trajectory.t[-1])
+    wheels, end = motion.config.vehicle.road_wheels, float(motion.t[-1])
     waves = [part for part in parts if isinstance(part, SineRoad | RandomRoad)]
     full = max(profile_of(wave, wheels.x[0], wheels.radius, 0.0).pieces[-1].nodes[0] for wave in waves)
-    steady = float((full - wheels.x[-1]) / trajectory.system.v_ref + SETTLING)
+    steady = float((full - wheels.x[-1]) / motion.system.v_ref + SETTLING)
     if end - steady >= SHORTEST:
         over = ""
         if len(waves) == 1 and isinstance(waves[0], SineRoad):
-            period = waves[0].wavelength / float(trajectory.system.v_ref)
+            period = waves[0].wavelength / float(motion.system.v_ref)
             count = int((end - steady) / period)
             if count > 0:
                 steady = end - count * period
@@ -112,11 +112,11 @@ def _on_waves(trajectory: Trajectory, parts: list[SimpleRoad]) -> Window:
     return Window(start, end, f"from {start:.1f} s on", shortfall)
 
 
-def _over(trajectory: Trajectory, uneven: tuple[float, float], name: str, measured: bool) -> Window:
+def _over(motion: Motion, uneven: tuple[float, float], name: str, measured: bool) -> Window:
     """Over something that is uneven between two x, m, and has a name; measured: a run need not come to its end."""
-    t, system = trajectory.t, trajectory.system
+    t, system = motion.t, motion.system
     last = float(t[-1])
-    wheels = trajectory.q[:, system.wheel, 0]
+    wheels = motion.q[:, system.wheel, 0]
     come = wheels.max(axis=1) + system.r >= uneven[0]
     if not come.any():
         shortfall = (
@@ -131,7 +131,7 @@ def _over(trajectory: Trajectory, uneven: tuple[float, float], name: str, measur
     if off == len(t):
         shortfall = "" if measured and last - start >= SHORTEST else f"The run ends while wheels are on the {name}"
         return Window(start, last, f"{began} to the end of the run", shortfall)
-    settled = max(off, _settled(trajectory, first))
+    settled = max(off, _settled(motion, first))
     end = float(t[settled])
     known = last - end >= max(BEYOND * (end - float(t[off])), RESTING)
     shortfall = "" if known else f"The run ends before the hull has settled behind the {name}"
@@ -139,16 +139,16 @@ def _over(trajectory: Trajectory, uneven: tuple[float, float], name: str, measur
     return Window(start, end, words, shortfall, goes_on=not known)
 
 
-def _settled(trajectory: Trajectory, first: int) -> int:
+def _settled(motion: Motion, first: int) -> int:
     """The sample at which the hull has settled: what is still to come of its rising, falling and pitching, by its
     kinetic energy summed over time, is less than SETTLED of that in the worst second since the sample `first`.
 
     A sum over time, other than the largest value in it, changes little where the run changes little.
     """
-    system = trajectory.system
-    v = trajectory.v[first:, system.chassis, 1:]
+    system = motion.system
+    v = motion.v[first:, system.chassis, 1:]
     inertia = np.array([system.mass[system.chassis], system.inertia[system.chassis]])
     sums = np.concatenate([[0.0], np.cumsum(v**2 @ inertia)])
-    second = min(round(trajectory.config.simulation.output_rate), len(v))
+    second = min(round(motion.config.simulation.output_rate), len(v))
     worst = (sums[second:] - sums[:-second]).max()
     return first + int((sums[-1] - sums[1:] <= SETTLED * worst).argmax())

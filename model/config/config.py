@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from importlib import resources
 from operator import attrgetter
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 import yaml
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -24,6 +24,7 @@ from model.config.validation import (
     Fault,
     check_values,
     convert,
+    rules_hold,
     shorten,
     unknown_fault,
     wheel_positions,
@@ -46,6 +47,8 @@ __all__ = [
 
 SIZE_LIMIT = 8_000_000  # bytes of a configuration file; 10 km of profile take 5 million
 _PRESETS = resources.files("configs")
+_DERIVING = {key for one, others in EXCLUSIVE for key in (one, *others)} | {"road.type"}  # others follow from these
+_SINGLE = {key for key in PARAMETER if PARAMETER[key].kind in ("number", "integer", "choice", "flag")} - _DERIVING
 _FIELDS = {key: attrgetter(key) for key in PARAMETER}
 
 
@@ -291,6 +294,9 @@ class Config(Section):
         Of two ways to say the same (positions or count, spacing, offset; preload force or deflection) the new
         one stays, and a new road type drops what only the old one had. Raises ConfigError with all faults.
         """
+        quick = self._with_values(changes)
+        if quick is not None:
+            return quick
         values: dict[str, Any] = dict(self.values())
         for one, others in EXCLUSIVE:
             if changes.get(one) is not None:
@@ -310,6 +316,29 @@ class Config(Section):
         if faults:
             raise ConfigError(faults)
         return config
+
+    def _with_values(self, changes: Mapping[str, Any]) -> Config | None:
+        """The same, where single values change that nothing else is derived from, as in a study: what stays is not
+        checked again. None for other changes, and for values that are not allowed.
+        """
+        if not all(key in _SINGLE and PARAMETER[key].applies_to(self.road.type) for key in changes):
+            return None
+        config = self
+        try:
+            for key, value in changes.items():
+                config = _put(config, key.split("."), convert(PARAMETER[key], value))
+        except (ValueError, OverflowError):
+            return None
+        return config if rules_hold(changes.keys(), config.value, self.road.type) else None
+
+
+S = TypeVar("S", bound=Section)
+
+
+def _put(section: S, path: list[str], value: Value) -> S:
+    """The section with another value at a path within it."""
+    name, *rest = path
+    return section.model_copy(update={name: _put(getattr(section, name), rest, value) if rest else value})
 
 
 def config_from_dict(given: Any) -> Config:

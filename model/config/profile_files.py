@@ -117,23 +117,27 @@ def read_profile_file(data: bytes, columns: Sequence[str] = (), units: Sequence[
 
 def _of_channels(channels: Channels, columns: Sequence[str], units: Sequence[str]) -> ProfileFile:
     """The profile in a file of equal steps."""
-    along = _unit(units, 0) or _known(channels.x_unit) or "m"
     y, name, unit = channels.along(columns[-1] if columns else None)
-    up = _unit(units, 1) or _known(unit) or "m"
+    named = [_named(text, given) for text, given in ((channels.x_unit, _unit(units, 0)), (unit, _unit(units, 1)))]
+    along, up = (_unit(units, k) or named[k] or "m" for k in range(2))
     y = y[:POINT_LIMIT]
+    if len(y) < 2:
+        raise PointsError(f"{channels.format}: {points_count(len(y))} below the header; give 2 to {POINT_LIMIT}")
     if np.isnan(y).any():
         sample = int(np.isnan(y).argmax()) + 1
         raise PointsError(f"{channels.format}, {name}: sample {sample} is missing; choose another line by road.columns")
     x = (channels.start + np.arange(len(y)) * channels.step) * UNITS[along]
     y = y * UNITS[up]
     check(x, y, lambda row: f"{channels.format}, sample {row + 1}")
-    return _read(x, y, f"{channels.format}, {name}, {_units_text(along, up)}", len(channels.heights))
+    how = f"{channels.format}, {name}, {_units_text(along, up)}{_overruled(units, named)}"
+    return _read(x, y, how, len(channels.heights))
 
 
 def _of_sheet(sheet: _Sheet, columns: Sequence[str], units: Sequence[str]) -> ProfileFile:
     first, second = _chosen(sheet, columns)
     x, y = _numbers(sheet, first, second)
-    along, up = (_unit(units, k) or _heading(sheet.columns[c])[1] for k, c in enumerate((first, second)))
+    headed = [_unit_headed(sheet.columns[c], _unit(units, k)) for k, c in enumerate((first, second))]
+    along, up = (_unit(units, k) or headed[k] for k in range(2))
     _refuse_unclear_units(sheet, first, second, along, up)
     x, y = x * UNITS[along or "m"], y * UNITS[up or "m"]
     if up is None and (np.diff(x) > 0.0).all():
@@ -141,6 +145,7 @@ def _of_sheet(sheet: _Sheet, columns: Sequence[str], units: Sequence[str]) -> Pr
     check(x, y, lambda row: f"line {sheet.lines[row]}")
     _refuse_one_column_of_decimal_commas(sheet, x, y)
     named = "no unit named, read as m" if along is None and up is None else _units_text(along or "m", up or "m")
+    named += _overruled(units, headed)
     known = _words(sheet.columns[first]) & ALONG and _words(sheet.columns[second]) & UP
     if len(sheet.columns) > 2 or columns or (sheet.headed and not known):
         named += f"; columns {sheet.name(first)} and {sheet.name(second)}"
@@ -164,10 +169,29 @@ def _unit(units: Sequence[str], number: int) -> str:
     return units[number] if number < len(units) else ""
 
 
-def _known(text: str) -> str | None:
-    """The unit of a file with a header, None where it names none. Raises PointsError for one that we do not know."""
+def _overruled(units: Sequence[str], named: Sequence[str | None]) -> str:
+    """A word where `road.units` says something else than the file does."""
+    pairs = [(what, _unit(units, k), named[k]) for k, what in enumerate(("x", "heights"))]
+    others = [f"{what} in {said}" for what, given, said in pairs if given and said and given != said]
+    return f" by road.units, though the file says {' and '.join(others)}" if others else ""
+
+
+def _unit_headed(column: _Column, given: str) -> str | None:
+    """The unit that a heading names. Raises PointsError for a heading that is not clear, unless a unit is given."""
+    try:
+        return _heading(column)[1]
+    except PointsError:
+        if given:
+            return None
+        raise
+
+
+def _named(text: str, given: str) -> str | None:
+    """The unit of a file with a header, None where it names none. Raises PointsError for one that we do not know,
+    unless a unit is given.
+    """
     unit = _unit_named(text)
-    if unit is None and text.strip() not in NO_UNIT:
+    if unit is None and text.strip() not in NO_UNIT and not given:
         raise PointsError(f"the unit {text.strip()[:40]!r} is unknown; give road.units, each of {ALLOWED_UNITS}")
     return unit
 

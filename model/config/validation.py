@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import numbers
 import reprlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence, Set
 from dataclasses import dataclass
 from difflib import SequenceMatcher, get_close_matches
 from itertools import pairwise
@@ -117,6 +117,21 @@ def _checked_part(part: Any, number: int, values: dict[str, Value], faults: list
         elif fault not in faults:
             faults.append(Fault(name, fault.value, fault.message))
     return {"type": PARAMETER["road.type"].default} | {path[5:]: value for path, value in road.items()}
+
+
+def rules_hold(changed: Set[str], value: Callable[[str], Value], road_type: str) -> bool:
+    """Whether values fit each other after some of a sound configuration's have changed; value: of a key now.
+
+    Parts of a sum are not looked into: false where a changed key may matter to one.
+    """
+    for keys, rule in _RULES:
+        if changed.isdisjoint(keys):
+            continue
+        if road_type == "sum":
+            return False
+        if all(PARAMETER[key].applies_to(road_type) for key in keys) and rule(*map(value, keys)):
+            return False
+    return True
 
 
 def unknown_fault(path: str, value: Any) -> Fault:
@@ -355,7 +370,8 @@ def _few_samples(output_rate: float, duration: float) -> str | None:
     if output_rate * duration <= SAMPLE_LIMIT:
         return None
     samples = f"{number_text(duration)} s at {number_text(output_rate)} samples a second"
-    return f"{samples} are more than the {SAMPLE_LIMIT} samples that are allowed"
+    fits = f"{SAMPLE_LIMIT // duration:.0f} a second, or {SAMPLE_LIMIT // output_rate:.0f} s, would do"
+    return f"{samples} are more than the {SAMPLE_LIMIT} samples that are allowed; {fits}"
 
 
 def _few_steps(step: float, duration: float, integrator: str) -> str | None:

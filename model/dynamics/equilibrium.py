@@ -7,6 +7,7 @@ Every body's height is y_0 + Σ_R sin θ_R E_x + cos θ_R E_y over the rotating 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 
 import numpy as np
 
@@ -17,12 +18,17 @@ from model.dynamics.vehicle import System
 FORCE_TOLERANCE = 1e-6  # N (or N m): what the rest pose must fulfil; rounding leaves up to half of it in heavy vehicles
 GOOD_ENOUGH = 1e-8  # N (or N m): the search stops here
 MAX_ITERATIONS = 200
-MOST_PITCH = np.radians(25)  # of the hull at rest: leaning further it has tipped over, and would lie on its floor
+MOST_LEAN = np.radians(75)  # of the hull at rest: leaning further it has turned over
+NEAR_LEAN = np.radians(25)  # further, a pose that Newton's method finds at once may be beyond a nearer one
+MOST_TURN = np.pi / 2  # of an arm in the hull: further, it has turned right over
 LONGEST_STEP = 0.05  # m or rad: of the search that follows the energy downhill …
 MOST_DESCENT = 600  # … in so many steps …
 CLOSE = 1e-3  # N (or N m): … to where Newton's method takes over …
-PAST_USE = 2.0  # rad: … or where an arm has turned so far, or the hull twice MOST_PITCH
+PAST_USE = 2.0  # rad: … or where the hull, or an arm in it, has turned so far
 STARTS = ((0.0, 0.0), (0.1, 0.2), (0.1, -0.2))  # m that the vehicle is lifted and rad that it leans, as it begins
+# Of a System: what does nothing at rest; and what does so in part
+MOVING = {"c_s", "c_rebound", "belly", "prescribed", "x_0", "v_ref", "K_p", "K_i", "F_max", "alpha", "beta"}
+MOVING |= {"ground", "stops"}
 LEAST_DAMPING = 1e-10  # of the Hessian's diagonal: keeps a spring of no stiffness from dividing by zero
 
 
@@ -33,9 +39,32 @@ class NoEquilibriumError(ValueError):
 def rest_pose(system: System) -> tuple[np.ndarray, np.ndarray]:
     """Poses q (B, 3) and normal loads (W,), N, at rest on flat ground, chassis at x = 0.
 
-    Raises NoEquilibriumError when the springs cannot carry the vehicle in any pose near the design pose: the hull leans
-    by MOST_PITCH at most, no arm is turned right over.
+    Raises NoEquilibriumError when the vehicle, let down from the design pose, finds no pose to stand in: it turns over,
+    or an arm does.
     """
+    q, load = _rest_pose(_Standing(system))
+    return q.copy(), load.copy()
+
+
+class _Standing:
+    """A System, equal to others with the same rest pose: runs of a study often have the vehicle in common."""
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        still = (value for name, value in zip(system._fields, system, strict=True) if name not in MOVING)
+        key = (value.tobytes() if isinstance(value, np.ndarray) else value for value in still)
+        self._key = (*key, system.ground.k_n, *system.stops[:3])
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Standing) and self._key == other._key
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+
+@lru_cache(maxsize=8)
+def _rest_pose(standing: _Standing) -> tuple[np.ndarray, np.ndarray]:
+    system = standing.system
     n, m, B = system.n, system.m, len(system.mass)
     rotating = np.concatenate([[0], np.arange(1, 1 + n), np.arange(1 + 2 * n, 1 + 2 * n + m)])
     E = _levers(system)
@@ -51,10 +80,13 @@ def rest_pose(system: System) -> tuple[np.ndarray, np.ndarray]:
     touching = np.zeros(B, dtype=bool)
     touching[system.wheel] = True
 
+    turning = np.arange(1, size)
+
     def terms(z: np.ndarray) -> tuple[float, np.ndarray, np.ndarray, np.ndarray]:
         sin, cos = np.sin(z[1:]), np.cos(z[1:])
         y = z[0] + E_x @ sin + E_y @ cos
-        G = np.column_stack([np.ones(B), E_x * cos - E_y * sin])
+        G = np.ones((B, size), order="F")
+        G[:, 1:] = E_x * cos - E_y * sin
         bend = -(E_x * sin + E_y * cos)
         sink = np.where(touching, np.maximum(system.r - y, 0.0), 0.0)
         under = pressed(system.ground, sink)
@@ -63,19 +95,15 @@ def rest_pose(system: System) -> tuple[np.ndarray, np.ndarray]:
         V = weight @ y + under.energy.sum() + held.energy.sum()
         gradient = force @ G + held.torque @ spring
         hessian = (G.T * under.stiffness) @ G + (spring.T * held.stiffness) @ spring
-        hessian[1:, 1:] += np.diag(force @ bend)
+        hessian[turning, turning] += force @ bend
         return float(V), gradient, hessian, sink
 
     # A few millimetres into the ground, or no wheel would feel it
     z = np.zeros(size)
     z[0] = system.q_design[0, 1] - depth(system.ground, weight.sum() / len(system.wheel))
     found = _minimise(terms, z)
-    trouble = _trouble(found)
-    if trouble:
-        found = _let_down(terms, z)
-        trouble = _trouble(found)
-    if trouble:
-        raise NoEquilibriumError(trouble)
+    if abs(found[0][1]) > NEAR_LEAN or not _stands(found):
+        found = _let_down(terms, z, n)
     z, _, _, sink = found
     return _poses(E, z[0], np.bincount(rotating, z[1:], B)), pressed(system.ground, sink).force[system.wheel]
 
@@ -84,42 +112,54 @@ Terms = Callable[[np.ndarray], tuple[float, np.ndarray, np.ndarray, np.ndarray]]
 Found = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # where, and the terms there but V
 
 
-def _trouble(found: Found) -> str:
-    """Why a pose that was found is none to start from; empty where it is one."""
+def _stands(found: Found) -> bool:
+    """Whether the vehicle can stand in a pose: nothing is turned over, forces balance, and it is stable."""
     z, gradient, hessian, _ = found
-    worst = np.abs(gradient).max()
-    if abs(z[1]) > MOST_PITCH or np.linalg.eigvalsh(hessian)[0] <= 0.0:
-        return (
-            "The rest pose on flat ground is unstable: the vehicle would tip or its arms fold. "
-            "Stiffen the suspension, move the wheels under the centre of mass, or lower the preload."
-        )
-    if not worst <= FORCE_TOLERANCE:
-        return (
-            f"No rest pose found on flat ground: {worst:.3g} N (or N m) stay unbalanced. "
-            "Stiffen the suspension or the ground, or lower the preload of the imaginary wheels."
-        )
-    if np.abs(z[1:]).max() > np.pi / 2:
-        return (
-            "At rest an arm would have turned right over: the suspension cannot carry the vehicle near its design "
-            "pose. Stiffen the suspension or lower the preload of the imaginary wheels."
-        )
-    return ""
+    if abs(z[1]) > MOST_LEAN or np.abs(z[2:] - z[1]).max() > MOST_TURN:
+        return False
+    return bool(np.abs(gradient).max() <= FORCE_TOLERANCE and np.linalg.eigvalsh(hessian)[0] > 0.0)
 
 
-def _let_down(terms: Terms, z: np.ndarray) -> Found:
-    """Where the vehicle comes to rest when it is let down slowly from the pose z, or leaning a little; or else why not.
+def _let_down(terms: Terms, z: np.ndarray, n: int) -> Found:
+    """Where the vehicle comes to rest when it is let down slowly from the pose z, or leaning a little; n: road arms.
 
     Newton's method can run past a minimum or end at a saddle; this follows the energy downhill in short steps.
+    Raises NoEquilibriumError with what happens to the vehicle instead.
     """
-    tried = []
+    ways = []
     for lift, pitch in STARTS:
         start = z.copy()
         start[:2] += lift, pitch
-        found = _minimise(terms, _descend(terms, start))
-        if not _trouble(found):
+        ways.append(_descend(terms, start))
+        found = _minimise(terms, ways[-1])
+        if _stands(found):
             return found
-        tried.append(found)
-    return tried[0]
+    raise NoEquilibriumError(_trouble(terms, ways[0], n))
+
+
+def _trouble(terms: Terms, z: np.ndarray, n: int) -> str:
+    """What happens to a vehicle that comes to z on its way down, where it cannot stand, and what to try."""
+    hull, arms = z[1], z[2:] - z[1]
+    if abs(hull) > MOST_LEAN:
+        way = "backwards" if hull > 0 else "forwards"
+        return (
+            f"The vehicle has no stable rest pose on flat ground: it tips over {way}, as "
+            "its springs right it less than its weight tips it. Stiffen the suspension, set the first and the last "
+            "wheel further apart, or lower the centre of mass."
+        )
+    arm = int(np.abs(arms).argmax())
+    if abs(arms[arm]) <= MOST_TURN:
+        return (
+            f"No rest pose found on flat ground: {np.abs(terms(z)[1]).max():.3g} N (or N m) stay unbalanced. "
+            "Stiffen the suspension or the ground, or lower the preload of the imaginary wheels."
+        )
+    name, number = ("road", arm + 1) if arm < n else ("imaginary", arm - n + 1)
+    return (
+        f"The vehicle has no rest pose on flat ground: the arm of {name} wheel {number} turns right over, its wheel "
+        f"{'upwards' if arms[arm] < 0 else 'downwards'}, as the springs hold it less than weight and preload turn it. "
+        f"Stiffen the suspension (vehicle.{name}_suspension.stiffness), lower the preload of the imaginary wheels, or "
+        "lower the masses."
+    )
 
 
 def _descend(terms: Terms, z: np.ndarray) -> np.ndarray:
@@ -132,7 +172,7 @@ def _descend(terms: Terms, z: np.ndarray) -> np.ndarray:
     for _ in range(MOST_DESCENT):
         curvature, ways = np.linalg.eigh(hessian)
         arrived = curvature[0] > 0.0 and np.abs(gradient).max() <= CLOSE
-        if arrived or abs(z[1]) > 2 * MOST_PITCH or np.abs(z[1:]).max() > PAST_USE:
+        if arrived or abs(z[1]) > PAST_USE or np.abs(z[2:] - z[1]).max() > PAST_USE:
             break
         least = LEAST_DAMPING * np.abs(curvature).max()
         slope = gradient @ ways

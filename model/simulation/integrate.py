@@ -17,7 +17,7 @@ from model.dynamics.vehicle import System
 from model.road.nearest_point import RoadTable
 from model.simulation.accuracy import APART_ALLOWED, advice, joints_apart
 from model.simulation.dense import STAGES, Memory
-from model.simulation.extremes import RISING, Extremes, begin, forget, make_extremes, note
+from model.simulation.extremes import RISING, Extremes, begin, forget, make_extremes, note, of_arms, of_wheels
 from model.simulation.flanks import make_flanks
 from model.simulation.peaks import Peaks
 from model.simulation.steppers import (
@@ -44,7 +44,7 @@ LONGEST_STEP = 0.02  # s
 FIRST_STEP = 1e-4  # s, to be tried
 STIFF_STEP = 1e-3  # s
 STIFFER = 1.05  # than at first, when wheels sink in more deeply
-LOOK = 0.1  # s of wall time between two looks at whether to stop, at most; see also STEPS_PER_CHUNK
+LOOK = 0.05  # s of wall time after which it is asked whether to stop: within a step of SciPy's it may be twice that
 SWING = 1.0  # m that wheels may move along the hull
 RADII_PER_STEP = 0.5  # no step runs past an obstacle
 
@@ -96,12 +96,14 @@ class Integration:
         atol: float = 1e-6,
         step: float = 1e-3,
         capacity: int | None = None,
+        figures_only: bool = False,
     ) -> None:
+        """figures_only: samples hold what figures are read off, and no more."""
         self.system, self.lanes, self.road = system, in_lanes(system), road
         self.duration, self.rate = duration, rate
         self.integrator, self.rtol, self.atol = integrator, rtol, atol
         self.apart_allowed = APART_ALLOWED
-        self.samples = make_samples(system, capacity or sample_count(duration, rate))
+        self.samples = make_samples(system, capacity or sample_count(duration, rate), figures_only)
         self._memory = Memory(y.copy(), np.zeros_like(y), np.zeros_like(y), np.zeros((STAGES, len(y))))
         self._work = make_work(system)
         self._extremes = make_extremes(system)
@@ -137,6 +139,7 @@ class Integration:
         y: np.ndarray,
         duration: float,
         capacity: int | None = None,
+        figures_only: bool = False,
     ) -> Integration:
         """A run as the configuration wants it integrated."""
         return cls(
@@ -150,6 +153,7 @@ class Integration:
             settings.atol,
             settings.step,
             capacity,
+            figures_only,
         )
 
     def ending(self, settings: Simulation) -> tuple[str, str]:
@@ -185,6 +189,10 @@ class Integration:
         self._clock.taken = end
         samples = Samples._make(part[: end - first].copy() for part in self.samples)
         return np.arange(first, end) / self.rate, samples, peaks
+
+    def jammed(self) -> np.ndarray:
+        """Wheels that go to and fro between two flanks of the road, as they are numbered among all."""
+        return np.flatnonzero(self._flanks.jammed_until[_lanes_of_wheels(self.system)] >= 0.0)
 
     def give_up(self) -> None:
         """End a run that takes too many steps: an endless one sets no bound itself."""
@@ -320,22 +328,26 @@ class Integration:
             clock.status = Status.TOO_MANY_STEPS
 
 
+def _lanes_of_wheels(system: System) -> np.ndarray:
+    """(W,) the lane of each wheel, of those that road and imaginary wheels of all blocks have."""
+    arm = np.arange(system.n)
+    road = arm + arm // LANES * LANES
+    return np.concatenate([road, road[: system.m] + LANES])
+
+
 def _in_order(system: System, extremes: Extremes) -> Peaks:
     """What was followed in lanes, in the model's order of wheels and arms."""
-    n, m = system.n, system.m
-    arm = np.arange(n)
-    wheel = arm + arm // LANES * LANES
-    wheel = np.concatenate([wheel, wheel[:m] + LANES])
+    arm, wheel = np.arange(system.n), _lanes_of_wheels(system)
     return Peaks(
-        load=extremes.load[wheel],
-        load_time=extremes.load_at[wheel],
-        depth=extremes.depth[wheel],
-        depth_time=extremes.depth_at[wheel],
-        air_time=extremes.air[wheel],
-        arm_high=extremes.high[arm],
-        arm_high_time=extremes.high_at[arm],
-        arm_low=extremes.low[arm],
-        arm_low_time=extremes.low_at[arm],
+        load=of_wheels(extremes, "load")[wheel],
+        load_time=of_wheels(extremes, "load_at")[wheel],
+        depth=of_wheels(extremes, "depth")[wheel],
+        depth_time=of_wheels(extremes, "depth_at")[wheel],
+        air_time=of_wheels(extremes, "air")[wheel],
+        arm_high=of_arms(extremes, "high")[arm],
+        arm_high_time=of_arms(extremes, "high_at")[arm],
+        arm_low=of_arms(extremes, "low")[arm],
+        arm_low_time=of_arms(extremes, "low_at")[arm],
         acceleration=np.array(extremes.hull[0]),
         acceleration_time=np.array(extremes.hull[1]),
     )

@@ -1,7 +1,8 @@
 """What makes a run need more steps than it may take: which keys of its configuration, and values that would do.
 
 A stiff spring or damper on a light body moves it at a rate of k/c or c/m, and no step may be much longer than one over
-that. So the motion is linearised where the run stands, with one key after the other made smaller.
+that. So the motion is linearised where the run stands, with one key after the other made smaller. A wheel that is
+pushed into a corner of the road changes from one side to the other without end, whatever the stiffness.
 """
 
 from __future__ import annotations
@@ -11,10 +12,11 @@ import numpy as np
 from model.config.config import Config
 from model.config.parameters import Value
 from model.config.validation import ConfigError
-from model.dynamics.lanes import in_lanes, make_work
+from model.dynamics.lanes import in_lanes, make_work, wheel_positions
 from model.dynamics.vehicle import build_system
 from model.simulation.integrate import Integration
 from model.simulation.steppers import stiffest_rate
+from model.simulation.trajectory import wheel_names
 
 BEARABLE = 1e4  # 1/s: the stiffest rate for which steps of half a millisecond are short enough
 LEAST = 1e-5
@@ -57,11 +59,23 @@ def relief(config: Config, run: Integration) -> dict[str, Value]:
 
 def advice(config: Config, run: Integration) -> str:
     """What to set, in words; empty if that would not help."""
+    if len(run.jammed()):
+        return _out_of_the_corner(config, run)
     changes = relief(config, run)
     if not changes:
         return ""
     settings = " and ".join(f"{key} to {_shown(value)}" for key, value in changes.items())
     return f"Set {settings}: it is so stiff here that no step may be much longer than {1 / _rate(config, run):.1g} s."
+
+
+def _out_of_the_corner(config: Config, run: Integration) -> str:
+    """What to do about a wheel that is jammed."""
+    wheel = int(run.jammed()[0])
+    name, x = wheel_names(run.system)[wheel], wheel_positions(run.system, run.y)[wheel]
+    jam = f"Wheel {name} is jammed in a corner of the road at x = {x:.2f} m and goes to and fro between its two sides."
+    if config.drive.mode == "prescribed":
+        return f"{jam} Set drive.mode to cruise, so that the vehicle is not pushed on, or make the road lower there."
+    return f"{jam} Make the road lower or smoother there, or the wheels larger."
 
 
 def _smaller(config: Config, key: str, part: float) -> Config | None:

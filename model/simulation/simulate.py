@@ -6,10 +6,10 @@ Compiled modules are imported by what runs them: Numba takes a third of a second
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cache
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -18,11 +18,12 @@ from model.dynamics.equilibrium import rest_pose
 from model.dynamics.lanes import pack
 from model.dynamics.vehicle import System, build_system
 from model.simulation.accuracy import APART_ALLOWED, ENERGY_ALLOWED, advice, energy_missing
-from model.simulation.trajectory import RunStatistics, Trajectory
+from model.simulation.trajectory import Motion, RunStatistics, Trajectory
 
 if TYPE_CHECKING:
     from model.simulation.steppers import Samples
 
+M = TypeVar("M", bound=Motion)
 CHUNK = 1.0  # s of simulated time between two looks at should_stop: about 1 ms
 
 
@@ -82,6 +83,21 @@ def simulate(
     and advice; one that does not account for its energy says so too.
     Raises NoEquilibriumError when the vehicle has no rest pose to start from.
     """
+    return _run(Trajectory, config, on_progress, should_stop, apart_allowed)
+
+
+def simulate_motion(config: Config, should_stop: Callable[[], bool] | None = None) -> Motion:
+    """The same run, to the last digit, without what no figure is read off. Raises NoEquilibriumError."""
+    return _run(Motion, config, should_stop=should_stop)
+
+
+def _run(
+    kind: type[M],
+    config: Config,
+    on_progress: Callable[[float], None] | None = None,
+    should_stop: Callable[[], bool] | None = None,
+    apart_allowed: float = APART_ALLOWED,
+) -> M:
     from model.road.road import SPARE, build_road
     from model.simulation import relief
     from model.simulation.integrate import Integration, Status
@@ -93,7 +109,7 @@ def simulate(
     system, road = build_system(config), build_road(config)
     y, static_load = starting_state(system)
     settings = config.simulation
-    run = Integration.of(settings, system, road.table, y, settings.duration)
+    run = Integration.of(settings, system, road.table, y, settings.duration, figures_only=kind is Motion)
     run.apart_allowed = apart_allowed
     stopped = False
     while not stopped and run.advance(run.t + CHUNK, should_stop) is Status.RUNNING:
@@ -109,10 +125,10 @@ def simulate(
     status, to_try = ("cancelled", "") if run.status is Status.RUNNING else run.ending(settings)
     if run.status in (Status.TOO_MANY_STEPS, Status.STEP_TOO_SMALL):
         to_try = relief.advice(config, run) or to_try
-    n = run.samples_done
-    trajectory = Trajectory(
+    n, wanted = run.samples_done, {field.name for field in fields(kind)}
+    motion = kind(
         t=np.arange(n) / settings.output_rate,
-        **sampled_arrays(run.samples, n),
+        **{name: values for name, values in sampled_arrays(run.samples, n).items() if name in wanted},
         tracked=run.peaks(),
         static_load=static_load,
         config=config,
@@ -126,8 +142,8 @@ def simulate(
             seconds=perf_counter() - began,
         ),
     )
-    vars(trajectory)["system"] = system  # what it would build when it is asked for
-    missing = trajectory.energy_error or 0.0
-    if trajectory.complete and missing > ENERGY_ALLOWED:
-        return replace(trajectory, status=f"inaccurate: {energy_missing(missing)}", advice=advice(settings))
-    return trajectory
+    vars(motion)["system"] = system  # what it would build when it is asked for
+    missing = motion.energy_error or 0.0
+    if motion.complete and missing > ENERGY_ALLOWED:
+        return replace(motion, status=f"inaccurate: {energy_missing(missing)}", advice=advice(settings))
+    return motion

@@ -33,8 +33,14 @@ SIZE_OF_SPEED = 1.0  # m/s or rad/s, what rtol is measured against: see error_sc
 SIZE_OF_POSITION = 0.1  # m or rad
 SIZE_OF_DISPLACEMENT = 0.1  # m
 NO_LIMIT = 1e30
+LEAST_INTEGRAL = (
+    1e-5  # m: error of ∫e that is allowed whatever rtol is; its rate jumps where the drive force is limited
+)
 LIVELY = 1.5  # m/s: where a body rises or falls faster than this, errors must be smaller in proportion …
 MOST_CARE = 4.0  # … down to this part
+VALLEYS = 30.0  # m: where valleys go on for longer, errors must be smaller yet
+RESTLESS = 0.9  # m/s: from this on …
+MOST_THERE = 5.0  # … with the third power, down to this part
 
 
 class Status(IntEnum):
@@ -55,21 +61,25 @@ class Samples(NamedTuple):
 
     q: np.ndarray  # (N, B, 3)
     v: np.ndarray  # (N, B, 3)
-    a: np.ndarray  # (N, B, 3)
+    a: np.ndarray  # (N, B, 3); of the chassis only (N, 1, 3) where only figures are wanted
     f_n: np.ndarray  # (N, W)
     f_t: np.ndarray  # (N, W)
     xi: np.ndarray  # (N, W)
     F: np.ndarray  # (N,)
-    lam: np.ndarray  # (N, rows of C)
+    lam: np.ndarray  # (N, rows of C); (N, 0) where only figures are wanted
     residual: np.ndarray  # (N,)
     work: np.ndarray  # (N,) J
 
 
-def make_samples(system: System, count: int) -> Samples:
-    """Room for that many samples, in one piece: the system gives a large one in large pages, which is quicker."""
+def make_samples(system: System, count: int, figures_only: bool = False) -> Samples:
+    """Room for that many samples, in one piece: the system gives a large one in large pages, which is quicker.
+
+    figures_only: without what no figure is read off.
+    """
     B, W = len(system.mass), len(system.wheel)
     rows = 2 * len(system.joint_i) + int(system.prescribed)
-    shapes = [(count, *shape) for shape in [(B, 3), (B, 3), (B, 3), (W,), (W,), (W,), (), (rows,), (), ()]]
+    accelerated, rows = (1, 0) if figures_only else (B, rows)
+    shapes = [(count, *shape) for shape in [(B, 3), (B, 3), (accelerated, 3), (W,), (W,), (W,), (), (rows,), (), ()]]
     ends = np.cumsum([0, *map(prod, shapes)])
     block = np.empty(ends[-1])
     parts = (block[first:end].reshape(shape) for first, end, shape in zip(ends, ends[1:], shapes, strict=False))
@@ -125,21 +135,24 @@ def error_scale(system: System, rtol: float, atol: float) -> np.ndarray:
     size[body[:, :3]], size[body[:, 3:]] = SIZE_OF_POSITION, SIZE_OF_SPEED
     size[wheel] = size[INT_E] = SIZE_OF_DISPLACEMENT
     scale = atol + rtol * size
+    scale[INT_E] = max(scale[INT_E], LEAST_INTEGRAL)
     scale[WORK] = NO_LIMIT  # a check of the motion, which it must not change
     return scale
 
 
 @compiled
 def record(lanes, road, t, y, dy, work, samples, k):
-    """Sample k: everything that the state y at time t tells."""
+    """Sample k: everything that the state y at time t tells, as far as samples have room for it."""
     rates(lanes, road, t, y, dy, work)
-    multipliers(lanes, dy, work, samples.lam[k])
+    if samples.lam.shape[1] > 0:
+        multipliers(lanes, dy, work, samples.lam[k])
     for b in range(len(lanes.place)):
         for axis in range(3):
-            position, speed = lanes.place[b, axis], lanes.place[b, axis + 3]
-            samples.q[k, b, axis] = y[position]
-            samples.v[k, b, axis] = y[speed]
-            samples.a[k, b, axis] = dy[speed]
+            samples.q[k, b, axis] = y[lanes.place[b, axis]]
+            samples.v[k, b, axis] = y[lanes.place[b, axis + 3]]
+    for b in range(samples.a.shape[1]):
+        for axis in range(3):
+            samples.a[k, b, axis] = dy[lanes.place[b, axis + 3]]
     loads(lanes, work, samples.f_n[k], samples.f_t[k])
     for wheel in range(len(lanes.xi_place)):
         samples.xi[k, wheel] = y[lanes.xi_place[wheel]]
@@ -163,14 +176,17 @@ def trouble(lanes, y):
 
 
 @inlined
-def care(lanes, y):
+def care(lanes, y, among_valleys):
     """How much smaller errors must be where wheels are thrown about, since what follows magnifies them: 1 on gentle
     roads.
     """
-    fastest = LIVELY
+    fastest = 0.0
     for b in range(len(lanes.place)):
         fastest = max(fastest, abs(y[lanes.place[b, 4]]))
-    return min(fastest / LIVELY, MOST_CARE)
+    smaller = min(max(fastest / LIVELY, 1.0), MOST_CARE)
+    if among_valleys:
+        smaller *= min(max((fastest / RESTLESS) ** 3, 1.0), MOST_THERE)
+    return smaller
 
 
 @compiled
@@ -335,6 +351,7 @@ def adaptive(tableau, lanes, road, work, memory, samples, extremes, flanks, cloc
     most_growth = 5.0
     stopped = lanes.stops.bump < np.inf or lanes.stops.rebound > -np.inf
     planned = 0.0  # step before it was cut short at a stop
+    many_valleys = span.valleys_to - span.valleys_from > VALLEYS
     _begin(lanes, road, work, memory, extremes, flanks, clock)
     while clock.t < span.stop and clock.steps + clock.rejected < most_tries:
         h = min(min(clock.step, span.longest), span.end - clock.t)
@@ -342,7 +359,9 @@ def adaptive(tableau, lanes, road, work, memory, samples, extremes, flanks, cloc
             _stage_state(tableau.stage[stage], stage, h, memory)
             rates(lanes, road, clock.t + tableau.time[stage] * h, memory.y_new, memory.k[stage], work)
         clock.evaluations += last
-        error = _error_of(tableau.error, h, memory, flanks.over_scale, states) * care(lanes, memory.y)
+        watching = (memory.y[0] > span.valleys_from) & (memory.y[0] < span.valleys_to)
+        error = _error_of(tableau.error, h, memory, flanks.over_scale, states)
+        error *= care(lanes, memory.y, watching & many_valleys)
 
         # At a jump of the forces no step is short enough; one of SMALLEST_STEP is too short to matter
         good = error <= 1.0 or (h <= SMALLEST_STEP and clock.forced < MOST_FORCED and np.isfinite(error))
@@ -351,7 +370,6 @@ def adaptive(tableau, lanes, road, work, memory, samples, extremes, flanks, cloc
             if clock.status != Status.RUNNING.value:
                 break
         free, wheel = h, NOBODY  # of jumps that are known
-        watching = (memory.y[0] > span.valleys_from) & (memory.y[0] < span.valleys_to)
         if watching and look(lanes, work, memory, flanks) > 0.0 and np.isfinite(error):
             free, wheel = before_change(tableau.dense, last, lanes, road, memory, flanks, clock.t, h)
         if good and stopped:

@@ -36,19 +36,17 @@ class RunStatistics:
     seconds: float  # wall-clock time of the whole run, s
 
 
-@dataclass(frozen=True)
-class Trajectory:
-    """One run. N samples, B bodies, W wheels (road 1…n, then imaginary), J joints; SI, radians, world frame."""
+@dataclass(frozen=True, kw_only=True)
+class Motion:
+    """What the figures of a run are read off. N samples, B bodies, W wheels (road 1…n, then imaginary); SI, radians,
+    world frame.
+    """
 
     t: np.ndarray  # (N,) s
     q: np.ndarray  # (N, B, 3) x, y, θ of every centre of mass
     v: np.ndarray  # (N, B, 3) their rates
-    a: np.ndarray  # (N, B, 3) their accelerations
+    a: np.ndarray  # (N, B, 3) their accelerations; of the chassis alone, (N, 1, 3), where no more was asked for
     normal_load: np.ndarray  # (N, W) f_n, N
-    traction: np.ndarray  # (N, W) f_t along the road, N
-    tangential_displacement: np.ndarray  # (N, W) ξ, m
-    drive_force: np.ndarray  # (N,) F, N
-    multipliers: np.ndarray  # (N, rows of C) λ
     constraint_residual: np.ndarray  # (N,) max |C(q)|, m
     static_load: np.ndarray  # (W,) f_n at the static equilibrium, N
     config: Config
@@ -94,6 +92,16 @@ class Trajectory:
     @property
     def complete(self) -> bool:
         return self.status == "complete"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trajectory(Motion):
+    """One whole run: its motion, with the accelerations of all bodies, and the forces."""
+
+    traction: np.ndarray  # (N, W) f_t along the road, N
+    tangential_displacement: np.ndarray  # (N, W) ξ, m
+    drive_force: np.ndarray  # (N,) F, N
+    multipliers: np.ndarray  # (N, rows of C) λ
 
     def save(self, path: str | Path) -> None:
         """Write the run as .npz (everything) or .csv (a table of motion and loads, a row a sample).

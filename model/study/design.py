@@ -13,7 +13,7 @@ from typing import Literal, overload
 
 import numpy as np
 
-from model.analysis.figures import FIGURE, FIGURES
+from model.analysis.figures import FIGURE, FIGURES, Figure
 from model.config.config import Config, ConfigError, parse_value
 from model.config.parameters import PARAMETER, Parameter, Value, number_text
 from model.config.validation import convert, shorten, unknown_fault
@@ -150,7 +150,7 @@ def make_study(
     sample: str = "grid",
     seed: int = 0,
 ) -> Study:
-    """A study of the base with these keys varied, and these figures, or all of the whole vehicle.
+    """A study of the base with these keys varied, and these figures, or all, those of each wheel too.
 
     sample: "grid", "latin-hypercube:N" or "sobol:N"; seed: of the latter two, whose designs it determines.
     Raises DesignError.
@@ -260,17 +260,31 @@ def _value(value: object, parameter: Parameter) -> Value:
 
 
 def checked_figures(names: Iterable[str], base: Config) -> tuple[str, ...]:
-    """The names of figures, each once; of none, those of the whole vehicle. Raises DesignError for unknown ones."""
-    wheels = [f"R{k + 1}" for k in range(len(base.vehicle.road_wheels.x))]
-    if base.vehicle.imaginary_wheels.enabled:
-        wheels += [f"I{k + 1}" for k in range(len(wheels) - 1)]
-    chosen = dict.fromkeys(name.strip() for name in names) or {figure.name: None for figure in FIGURES}
+    """The names of figures, each once; of none, all: those of the whole vehicle, then those of each wheel.
+
+    Raises DesignError for unknown ones.
+    """
+    chosen = tuple(dict.fromkeys(name.strip() for name in names))
+    if not chosen:
+        whole = tuple(figure.name for figure in FIGURES)
+        return whole + tuple(f"{figure.name}.{wheel}" for figure in FIGURES for wheel in _wheels(figure, base))
     for name in chosen:
         of, dot, wheel = name.partition(".")
         if of not in FIGURE:
             near = get_close_matches(of, FIGURE, n=1, cutoff=0.0)[0]
             raise DesignError(f"{name}: there is no such figure; the nearest one is {near}")
-        if dot and not (FIGURE[of].per_wheel and wheel in wheels):
-            of_wheels = f"give {of}.R1 … {of}.{wheels[-1]}" if FIGURE[of].per_wheel else f"give {of}"
+        wheels = _wheels(FIGURE[of], base)
+        if dot and wheel not in wheels:
+            of_wheels = f"give {of}.R1 … {of}.{wheels[-1]}" if wheels else f"give {of}"
             raise DesignError(f"{name}: there is no such figure; {of_wheels}")
-    return tuple(chosen)
+    return chosen
+
+
+def _wheels(figure: Figure, base: Config) -> list[str]:
+    """The wheels that have a figure of their own."""
+    if not figure.per_wheel:
+        return []
+    road = [f"R{k + 1}" for k in range(len(base.vehicle.road_wheels.x))]
+    if figure.road_wheels_only or not base.vehicle.imaginary_wheels.enabled:
+        return road
+    return road + [f"I{k + 1}" for k in range(len(road) - 1)]

@@ -1,7 +1,8 @@
 """How fast a vehicle may go: over rough ground until its driver absorbs 6 W, over half-rounds until he feels 2.5 g.
 
 That is how the NATO Reference Mobility Model reports ride. For each ground the figure is computed at a row of speeds;
-the limit is where it first exceeds its bound, sought more closely between the speeds next to it.
+the limit is where it first exceeds its bound, sought more closely between the speeds next to it. Slow runs take long:
+the row is followed downwards only as far as the figure may still come near its bound.
 """
 
 from __future__ import annotations
@@ -24,6 +25,9 @@ from model.study.running import Evaluate, Job, Outcome, at_once
 
 SHOCK_BOUND = 2.5  # g
 SPEEDS = (2.0, 3.0, 4.0, 6.0, 8.0, 11.0, 15.0, 20.0, 28.0, 40.0, 56.0, 80.0)  # km/h
+FAST = 11.0  # km/h: faster ones are tried at once, and then slower ones, one after the other …
+FAR_BELOW = 0.2  # … until the figure is less than this part of its bound
+BETWEEN = (62.0, 68.0, 74.0)  # km/h, over half-rounds too: over them the shock rises and falls more quickly with speed
 ROUNDS = 2  # of closer search, each with one more run
 STRETCH = 80.0  # m of random road that figures are taken from
 COURSE = 150.0  # m of a measured profile that is driven over, at most
@@ -134,6 +138,15 @@ def half_round_grounds(base: Config) -> list[Ground]:
     return grounds
 
 
+def course_of(base: Config, seeds: Sequence[int] = (1, 2, 3)) -> list[list[Ground]]:
+    """Random roads and half-rounds in the order in which they tell most: all with the first seed, then other seeds."""
+    first, *others = (iso_grounds(base, [seed]) for seed in seeds)
+    rounds = half_round_grounds(base)
+    coarse = [*rounds[1::3], *(ground for ground in first if ground.changes["road.type"] == "random")]
+    fine = [ground for ground in (*rounds, *first) if ground not in coarse]
+    return [[*coarse, *fine], *others]
+
+
 def limits(vehicles: Sequence[tuple[Config, Sequence[Ground]]], evaluate: Evaluate = at_once) -> list[Limit]:
     """The limit of each vehicle on each of its grounds."""
     cases = [
@@ -141,8 +154,7 @@ def limits(vehicles: Sequence[tuple[Config, Sequence[Ground]]], evaluate: Evalua
         for number, (base, grounds) in enumerate(vehicles)
         for ground in grounds
     ]
-    for round_ in range(1 + ROUNDS):
-        wanted = [(case, speed) for case in cases for speed in (SPEEDS if round_ == 0 else case.closer())]
+    while wanted := [(case, speed) for case in cases for speed in case.wanted()]:
         outcomes = evaluate([case.job(speed) for case, speed in wanted])
         for (case, speed), outcome in zip(wanted, outcomes, strict=True):
             case.found[speed] = outcome
@@ -159,13 +171,28 @@ class _Case:
 
     def __post_init__(self) -> None:
         self.found: dict[float, Outcome] = {}
-        shock = self.ground.family == "half-round"
-        self.figure, self.bound = (SHOCK.name, SHOCK_BOUND) if shock else (POWER.name, POWER_LIMIT)
+        self.rounds = 0  # of closer search that were made
+        self.shock = self.ground.family == "half-round"
+        self.figure, self.bound = (SHOCK.name, SHOCK_BOUND) if self.shock else (POWER.name, POWER_LIMIT)
 
     def job(self, speed: float) -> Job:
         after = SETTLING if self.ground.family == "ISO 8608" else AFTER
         duration = round(self.ground.distance / (speed / 3.6) + after, 2)
         return Job(self.config, {"drive.speed_kmh": speed, "simulation.duration": duration}, (self.figure,))
+
+    def wanted(self) -> list[float]:
+        """The speeds to be tried next; none once the limit is known."""
+        if not self.found:
+            # Half-rounds are short, and over them slow runs take no time
+            return sorted({*SPEEDS, *BETWEEN}) if self.shock else [speed for speed in SPEEDS if speed > FAST]
+        slowest, value = self._values()[0]
+        slower = [speed for speed in SPEEDS if speed < slowest]
+        if slower and not (value is not None and value < FAR_BELOW * self.bound):
+            return slower[-1:]
+        if self.rounds == ROUNDS:
+            return []
+        self.rounds += 1
+        return self._closer()
 
     def _values(self) -> list[tuple[float, float | None]]:
         return [(speed, self.found[speed].figures[0]) for speed in sorted(self.found)]
@@ -192,7 +219,7 @@ class _Case:
         part = log(self.bound / below) / log(above / below)
         return exp(log(low) + part * (log(high) - log(low)))
 
-    def closer(self) -> list[float]:
+    def _closer(self) -> list[float]:
         """One more speed to be tried: where the bound should be, but well off either end."""
         between, crossing = self._between(), self._crossing()
         if between is None or isinstance(crossing, str):

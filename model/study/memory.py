@@ -8,8 +8,10 @@ from hashlib import sha256
 from pathlib import Path
 
 from model.config.config import Config, dump_config
+from model.files import write_whole
 from model.simulation.batch import in_order
 from model.simulation.simulate import warm_up
+from model.study.design import DesignError
 from model.study.running import Job, Outcome, Spread, done
 
 
@@ -17,10 +19,16 @@ class StoppedError(Exception):
     """The analysis was asked to stop."""
 
 
+def part_of(path: Path) -> Path:
+    """Where runs are remembered until the analysis is done."""
+    return path.with_name(f"{path.name}.part")
+
+
 class Memory:
     """Does jobs and remembers them: in a file of JSON lines, one a run. An Evaluate.
 
-    An analysis that is the same again asks for the same runs; those of the file are not computed again.
+    An analysis that is the same again asks for the same runs; those of the file are not computed again. Until it is
+    done the file is NAME.part.
     """
 
     def __init__(
@@ -32,18 +40,17 @@ class Memory:
         should_stop: Callable[[], bool] = lambda: False,
         spread: Spread = in_order,
     ) -> None:
-        """go_on: with the runs that the file has; else it begins anew. Raises OSError."""
+        """go_on: with the runs that the file has; else anew. Raises OSError, or DesignError for another file."""
+        self.path, self.part = path, part_of(path)
         self.version, self.on_run, self.should_stop, self.spread = version, on_run, should_stop, spread
         self.known: dict[str, Outcome] = {}
         self._digests: dict[int, tuple[Config, str]] = {}
-        if go_on and path.exists():
-            for line in path.read_text(encoding="utf-8").splitlines(keepends=True):
-                if line.endswith("\n"):
-                    key, status, figures = json.loads(line)
-                    self.known[key] = Outcome(status, tuple(figures))
-        self._file = path.open("w", encoding="utf-8")
-        for key, known in self.known.items():
-            self._write(key, known)
+        if go_on:
+            for kept in (path, self.part):
+                if kept.exists():
+                    self.known |= _read(kept)
+        write_whole(self.part, "".join(_line(key, known) for key, known in self.known.items()).encode())
+        self._file = self.part.open("a", encoding="utf-8")
 
     def __call__(self, jobs: list[Job]) -> list[Outcome]:
         """Raises StoppedError when it is asked to stop; what was done is kept."""
@@ -55,7 +62,7 @@ class Memory:
         try:
             for key, outcome in zip(new, found, strict=True):
                 self.known[key] = outcome
-                self._write(key, outcome)
+                self._file.write(_line(key, outcome))
                 self._file.flush()
                 self.on_run()
                 if self.should_stop():
@@ -64,11 +71,16 @@ class Memory:
             found.close()
         return [self.known[key] for key in keys]
 
-    def close(self) -> None:
-        self._file.close()
+    def finish(self) -> None:
+        """The analysis is done."""
+        self.close()
+        self.part.replace(self.path)
 
-    def _write(self, key: str, outcome: Outcome) -> None:
-        self._file.write(json.dumps([key, outcome.status, outcome.figures]) + "\n")
+    def close(self) -> None:
+        """Leave what was done to a later one that goes on; nothing where nothing was."""
+        self._file.close()
+        if not self.known:
+            self.part.unlink(missing_ok=True)
 
     def _key(self, job: Job) -> str:
         """The same for the same run of the same version."""
@@ -77,3 +89,20 @@ class Memory:
             self._digests[id(job.base)] = job.base, sha256(text.encode()).hexdigest()[:16]
         changes = dict(sorted(job.changes.items()))
         return json.dumps([self._digests[id(job.base)][1], changes, job.figures])
+
+
+def _line(key: str, outcome: Outcome) -> str:
+    return json.dumps([key, outcome.status, outcome.figures]) + "\n"
+
+
+def _read(path: Path) -> dict[str, Outcome]:
+    """The runs in a file, whose last line may be half written. Raises DesignError for a file that holds no runs."""
+    known = {}
+    try:
+        for line in path.read_text(encoding="utf-8").splitlines(keepends=True):
+            if line.endswith("\n"):
+                key, status, figures = json.loads(line)
+                known[str(key)] = Outcome(str(status), tuple(figures))
+    except (ValueError, TypeError):
+        raise DesignError(f"{path}: holds no runs of a study; delete it, or leave out --resume") from None
+    return known

@@ -8,14 +8,14 @@ from functools import partial
 from itertools import islice
 from typing import Any, NamedTuple, Protocol
 
-from model.analysis.figures import figures_by_name
-from model.analysis.ride import summary
+from model.analysis.figures import figure_named
+from model.analysis.ride import Summary
 from model.config.config import Config, ConfigError
 from model.config.parameters import Value
 from model.dynamics.equilibrium import NoEquilibriumError
 from model.simulation.batch import in_order
-from model.simulation.simulate import simulate, warm_up
-from model.simulation.trajectory import Trajectory
+from model.simulation.simulate import simulate, simulate_motion, warm_up
+from model.simulation.trajectory import Motion, Trajectory
 from model.study.design import Point, Study
 
 COMPLETE = "complete"
@@ -83,23 +83,27 @@ def outcome(
     changes: Mapping[str, Value],
     figures: tuple[str, ...],
     keep: Callable[[Trajectory], None] | None = None,
+    should_stop: Callable[[], bool] | None = None,
 ) -> Outcome:
-    """What a configuration with changes comes to; keep: gets the run."""
+    """What a configuration with changes comes to; keep: gets the run; should_stop: as for `simulate`."""
     nothing = (None,) * len(figures)
     try:
-        trajectory = simulate(base.replace(changes))
-        if keep is not None:
-            keep(trajectory)
-        if not trajectory.complete:
-            return Outcome(trajectory.status, nothing)
-        named = figures_by_name(summary(trajectory))
+        config = base.replace(changes)
+        motion: Motion
+        if keep is None:
+            motion = simulate_motion(config, should_stop)
+        else:
+            keep(motion := simulate(config, should_stop=should_stop))
+        if not motion.complete:
+            return Outcome(motion.status, nothing)
+        of = Summary(motion)
+        return Outcome(COMPLETE, tuple(figure_named(name, of) for name in figures))
     except ConfigError as error:
         return Outcome(_line(f"not allowed: {error.faults[0]}"), nothing)
     except NoEquilibriumError as error:
         return Outcome(_line(f"no rest pose: {error}"), nothing)
     except (ValueError, ArithmeticError) as error:  # of thousands one that nobody thought of must not end the others
         return Outcome(_line(f"failed: {error}"), nothing)
-    return Outcome(COMPLETE, tuple(named.get(name) for name in figures))
 
 
 def _line(text: str) -> str:

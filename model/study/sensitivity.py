@@ -149,7 +149,7 @@ def sensitivity(
         count["lost"] += len(missing)
         if len(missing) > MOST_LOST * len(outcomes):
             raise DesignError(
-                f"{len(missing)} of {len(outcomes)} runs did not come to their end, such as: {missing[0].status}; "
+                f"incomplete: {len(missing)} of {len(outcomes)} runs, such as: {missing[0].status}; "
                 "give narrower ranges"
             )
         found = np.array([outcome.figures for outcome in outcomes], dtype=float).T

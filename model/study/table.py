@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 SUFFIXES = (".parquet", ".csv")
 BATCH = 1000  # rows read or written at once
 KEY = b"trackride"  # of the metadata in Parquet
+TOTAL = 3  # where the number of runs stands in what is told of a study
 ROW_BYTES = 40, 20  # on disk: of a row, and for each of its columns
 
 
@@ -44,7 +45,7 @@ class Made:
     @classmethod
     def by(cls, study: Study, version: str, command: str) -> Made:
         varied = [[of.key, of.values if isinstance(of, Values) else (of.low, of.high)] for of in study.varied]
-        told = [varied, study.sample, study.seed, len(study.points), study.figures]
+        told = [varied, study.sample, study.seed, len(study.points), study.figures]  # the fourth is TOTAL
         return cls(dump_config(study.base), version, command, json.dumps(told))
 
     def same_runs(self, other: Made) -> bool:
@@ -52,12 +53,17 @@ class Made:
         return (self.configuration, self.version, self.study) == (other.configuration, other.version, other.study)
 
 
+def part_of(path: Path) -> Path:
+    """Where the rows of a table go while its study runs."""
+    return path.with_name(f"{path.name}.part")
+
+
 class TableWriter:
     """Takes the rows of a study in their order, and writes its table. Raises OSError when it cannot."""
 
     def __init__(self, path: Path, study: Study, made: Made, go_on: bool = False) -> None:
         """go_on: after the rows that a table of the same study has already. Raises DesignError for one of another."""
-        self.path, self.part = path, path.with_name(f"{path.name}.part")
+        self.path, self.part = path, part_of(path)
         self.study, self.made = study, made
         self.done = 0  # rows that are written
         if go_on and (self.part.exists() or path.exists()):
@@ -70,13 +76,13 @@ class TableWriter:
         """Begin with the sound rows of a table that was not finished, whose last line may be half written."""
         made = read_made(path)
         if not made.same_runs(self.made):
-            raise DesignError(f"{path}: is the table of another study, or of another version; leave out --resume")
+            raise DesignError(f"{path}: is the table of another study, or of another version; give another name")
         fresh = self.part.with_name(f"{self.part.name}.new")
         _begin(fresh, self.study, self.made)
         with fresh.open("a", encoding="utf-8", newline="") as file:
             for row in read_rows(path, self.study):
                 if row.run != self.done:
-                    raise DesignError(f"{path}: run {self.done} is missing; leave out --resume")
+                    raise DesignError(f"{path}: run {self.done} is missing; delete it, and leave out --resume")
                 file.write(_line(row))
                 self.done += 1
         os.replace(fresh, self.part)
@@ -131,6 +137,20 @@ def read_made(path: Path) -> Made:
         return Made(**json.loads(text))
     except (KeyError, TypeError, ValueError):
         raise no_table from None
+
+
+def progress_of(path: Path) -> tuple[int, int]:
+    """Rows that a table has, and those that its study has; both 0 where there is no table of a study."""
+    try:
+        total = int(json.loads(read_made(path).study)[TOTAL])
+        if path.suffix == ".parquet":
+            from pyarrow import parquet
+
+            return parquet.read_metadata(path).num_rows, total
+        with path.open(encoding="utf-8", newline="") as file:
+            return max(sum(line.endswith("\n") for line in file) - 2, 0), total
+    except (OSError, DesignError, LookupError, TypeError, ValueError):
+        return 0, 0
 
 
 def read_rows(path: Path, study: Study) -> Iterator[Row]:

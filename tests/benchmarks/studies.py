@@ -19,11 +19,12 @@ from statistics import median
 from time import perf_counter, sleep
 
 from model import load_config, simulate
-from model.analysis.figures import figures_by_name
-from model.analysis.ride import summary
+from model.analysis.figures import figure_named
+from model.analysis.ride import Summary
 from model.simulation.batch import in_order
+from model.simulation.simulate import simulate_motion
 from model.study.design import Range, Study, make_study
-from model.study.running import Spread, rows
+from model.study.running import Outcome, Row, Spread, rows
 from model.study.table import Made, TableWriter
 from tests.benchmarks.model import cores
 
@@ -66,10 +67,11 @@ def _overhead() -> dict[str, tuple[float, str]]:
             simulate(config)
         bare = perf_counter() - began
         ratios.append(_seconds(study, one) / bare)
-    run = simulate(study.base)
+    run = simulate_motion(study.base)
     for _ in range(RUNS):
-        began = perf_counter()
-        figures_by_name(summary(run))
+        began, of = perf_counter(), Summary(run)
+        for name in study.figures:
+            figure_named(name, of)
         figures.append(perf_counter() - began)
     return {
         "a study's run, all figures and its row": (median(ratios), "times a bare run"),
@@ -80,12 +82,14 @@ def _overhead() -> dict[str, tuple[float, str]]:
 def _threads() -> dict[str, tuple[float, str]]:
     study = _study(RUNS)
     one, two = partial(in_order, workers=1), partial(in_order, workers=2)
-    ratios, rates = [], []
+    ratios, rates, alone = [], [], []
     for _ in range(ROUNDS):
         single, double = _seconds(study, one), _seconds(study, two)
         ratios.append(single / double)
         rates.append(RUNS / double)
+        alone.append(RUNS / single)
     return {
+        "runs of a study a second, 1 thread": (median(alone), "1/s"),
         "runs of a study a second, 2 threads": (median(rates), "1/s"),
         f"2 threads of a study, on {cores()} cores": (median(ratios), "times one"),
     }
@@ -104,10 +108,39 @@ def _cluster() -> dict[str, tuple[float, str]]:
     from model.study.cluster import on_cluster
 
     study = _study(ON_CLUSTER)
-    with local_cluster(2) as address, on_cluster(address) as spread:
-        _seconds(_study(RUNS), spread)
-        there, here = _seconds(study, spread), _seconds(study, partial(in_order, workers=2))
-    return {f"{ON_CLUSTER} runs on dask, 2 workers of 1 thread": (there / here, "times 2 threads")}
+    seconds = {}
+    for workers in (1, 2):
+        with local_cluster(workers) as address, on_cluster(address) as spread:
+            _seconds(_study(RUNS), spread)
+            seconds[workers] = _seconds(study, spread)
+            passing = _passing(spread)
+    here = _seconds(study, partial(in_order, workers=2))
+    return {
+        f"{ON_CLUSTER} runs on dask, 2 workers of 1 thread": (seconds[2] / here, "times 2 threads"),
+        f"2 workers on dask, on {cores()} cores": (seconds[1] / seconds[2], "times one"),
+        "a row through dask into the table": (1e6 * passing, "µs"),
+    }
+
+
+def _passing(spread: Spread) -> float:
+    """s that a row takes there, back and into the table when nothing is computed."""
+    study = _study(MANY)
+    give = partial(_given, next(rows(study)))
+    list(spread(give, range(RUNS)))  # workers import this file
+    with tempfile.TemporaryDirectory() as folder:
+        table = TableWriter(Path(folder) / "table.parquet", study, Made.by(study, "", ""))
+        began = perf_counter()
+        for row in spread(give, range(MANY)):
+            table.add(row)
+        taken = perf_counter() - began
+        table.close()
+    return taken / MANY
+
+
+def _given(row: Row, run: int) -> Row:
+    """A row like another, with figures of its own."""
+    figures = tuple(None if figure is None else figure + run for figure in row.outcome.figures)
+    return Row(run, row.point, Outcome(row.outcome.status, figures))
 
 
 @contextmanager

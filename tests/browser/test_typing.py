@@ -6,7 +6,7 @@ from playwright.sync_api import Locator, expect
 
 from tests.browser.driver import Explorer
 
-KEY = 120  # ms from one key to the next
+KEY = 70  # ms from one key to the next: more than viser gathers, less than a pause
 
 
 def box(explorer: Explorer, label: str) -> Locator:

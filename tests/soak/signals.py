@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -20,14 +21,17 @@ BUSY = 3.0  # … times this, where the machine computes something else beside
 LONG = "simulation.duration=20"  # s: a run that takes long enough to be interrupted, and a file to be written
 
 
-def interruptions(count: int, seed: int = 0) -> Outcome:
-    """A third each: kill -9 while a run is computed or written, Ctrl+C then, Ctrl+C while the explorer starts."""
+def interruptions(count: int, seed: int = 0, busy: float = BUSY) -> Outcome:
+    """A third each: kill -9 while a run is computed or written, Ctrl+C then, Ctrl+C while the explorer starts.
+
+    busy: how many times longer than promised the explorer may take to end.
+    """
     outcome = Outcome("Ctrl+C and kill -9", f"{count} programs, seed {seed}.")
     rng = np.random.default_rng(seed)
+    checks = _killed, _interrupted, partial(_explorer, busy)
     with tempfile.TemporaryDirectory() as folder:
         for number in range(count):
-            check = (_killed, _interrupted, _explorer)[number % 3]
-            ending, fault = check(Path(folder), rng)
+            ending, fault = checks[number % 3](Path(folder), rng)
             if fault:
                 outcome.faults.append(f"{number}: {fault}")
             else:
@@ -62,18 +66,18 @@ def _interrupted(folder: Path, rng: np.random.Generator) -> tuple[str, str]:
     return f"Ctrl+C: exit status {status}, file {'there' if out.exists() else 'not there'}", _not_whole(out)
 
 
-def _explorer(folder: Path, rng: np.random.Generator) -> tuple[str, str]:
+def _explorer(busy: float, folder: Path, rng: np.random.Generator) -> tuple[str, str]:
     with _started("explore", "--no-browser", "--port", "0") as process:
         time.sleep(rng.uniform(0.0, 4.0))
         process.send_signal(signal.SIGINT)
         began = time.monotonic()
         try:
-            process.wait(10 * SOON)
+            process.wait(3 * busy * SOON)
         except subprocess.TimeoutExpired:
             process.kill()
             return "", "explore: Ctrl+C was lost"
     took = time.monotonic() - began
-    return "explore: ended", f"explore: Ctrl+C took {took:.1f} s" if took > BUSY * SOON else ""
+    return "explore: ended", f"explore: Ctrl+C took {took:.1f} s" if took > busy * SOON else ""
 
 
 def _not_whole(out: Path) -> str:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from io import StringIO
 from typing import Any
 
 from matplotlib.axes import Axes
+from rich.table import Column, Table
 
 from app.format.markup import Content, Html, element
 from app.reports.drawings import SMALL, Drawing, Look
@@ -15,6 +17,9 @@ from app.reports.html_page import document, picture
 from model.analysis.figures import FIGURE
 from model.config.config import Config, dump_config
 from model.config.parameters import PARAMETER
+
+NAME = 21  # characters in a line of a dotted name in the terminal: a parameter's longest part
+DOTTED = re.compile(r"\w+(\.\w+)+")
 
 
 def key_label(key: str) -> str:
@@ -43,6 +48,28 @@ def number_cell(value: object) -> str:
     if value is None:
         return ""
     return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def terminal_table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
+    """For the terminal: dotted names in the first column break behind dots only."""
+    lines = [[folded(cell) for cell in row] for row in rows]
+    named = any(DOTTED.fullmatch(row[0]) for row in rows)
+    shown = Table(*(Column(folded(head), overflow="fold", no_wrap=named and not k) for k, head in enumerate(heads)))
+    for line in lines:
+        shown.add_row(*line)
+    return shown
+
+
+def folded(cell: str) -> str:
+    """A cell; a dotted name in lines of NAME characters."""
+    if not DOTTED.fullmatch(cell):
+        return cell
+    lines = [""]
+    for piece in re.findall(r"[^.]+\.?", cell):
+        if lines[-1] and len(lines[-1]) + len(piece) > NAME:
+            lines.append("")
+        lines[-1] += piece
+    return "\n".join(lines)
 
 
 def legend(axes: Axes, look: Look, **options: Any) -> None:

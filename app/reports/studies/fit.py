@@ -11,13 +11,14 @@ from rich.table import Table
 from app.format.markup import element
 from app.reports.drawings import WIDTH, Drawing, Look, panels, plain_axes
 from app.reports.html_page import wide_table
-from app.reports.studies.common import csv_bytes, key_label, legend, result_files
+from app.reports.studies.common import csv_bytes, key_label, legend, result_files, terminal_table
 from model.config.config import Config, dump_config
 from model.config.parameters import number_text
 from model.study.design import Range
 from model.study.fit import Estimate, Fit
 
-HEADS = ("Value", "Fitted", "From (95 %)", "To (95 %)")
+HEADS = ("Value", "Fitted", "From (95 %)", "To (95 %)", "Note")
+POOR = 0.5  # of the record's energy: a run that explains less is not the record's, or the model is not right
 SHARE = 4  # spectra are means over stretches of a fourth of the record
 CAPTION = (
     "Vertical acceleration: measured, fitted, and of the vehicle as it was, in time and as spectra. Intervals "
@@ -25,17 +26,14 @@ CAPTION = (
 )
 
 
-def files(found: Fit, base: Config, over: Sequence[Range], record: str, low_pass: float | None) -> dict[str, bytes]:
+def files(found: Fit, base: Config, over: Sequence[Range], record: str) -> dict[str, bytes]:
     """By name: page, figure, tables, and the fitted configuration."""
     ranges = [[key_label(of.key), of.key, f"{number_text(of.low)} to {number_text(of.high)}"] for of in over]
-    left = f"{found.rms:.3g} m/s² are left (rms)"
-    before = "" if found.rms_before is None else f", {found.rms_before:.3g} m/s² as it was"
-    independent = f"{len(found.t)} samples, worth {found.samples:.0f} independent ones"
-    filtered = "" if low_pass is None else f"; compared up to {low_pass:g} Hz"
     body = [
-        element("p", f"{left}{before}; {independent}{filtered}."),
+        element("p", told(found)),
+        *(element("p", doubt) for doubt in doubts(found, over)),
         element("h2", "Values"),
-        wide_table(HEADS, _rows(found)),
+        wide_table(HEADS, _rows(found, over)),
         element("h2", "Ranges"),
         wide_table(("Key", "Name", "Range"), ranges),
     ]
@@ -53,12 +51,55 @@ def files(found: Fit, base: Config, over: Sequence[Range], record: str, low_pass
     return result_files("Fitted to a record", subtitle, drawing(found), CAPTION, body, [base], tables)
 
 
-def table(found: Fit) -> Table:
+def table(found: Fit, over: Sequence[Range]) -> Table:
     """For the terminal."""
-    shown = Table(*HEADS)
-    for row in _rows(found):
-        shown.add_row(*row)
-    return shown
+    return terminal_table(HEADS, _rows(found, over))
+
+
+def told(found: Fit) -> str:
+    """How near the fitted run comes to the record."""
+    measured = float(np.std(found.measured))
+    before = "" if found.rms_before is None else f", {found.rms_before:.3g} m/s² as it was"
+    filtered = "" if found.low_pass is None else f" Compared up to {found.low_pass:g} Hz."
+    return (
+        f"{found.rms:.3g} m/s² are left (rms) of {measured:.3g} m/s²{before}; {len(found.t)} samples, worth "
+        f"{found.samples:.0f} independent ones.{filtered}"
+    )
+
+
+def doubts(found: Fit, over: Sequence[Range]) -> list[str]:
+    """Sentences that say why the values may not be trusted."""
+    sentences = []
+    if found.explained < POOR:
+        sentences.append(
+            f"The fitted run explains {100 * max(found.explained, 0):.0f} % of the record's energy: see that road, "
+            "speed and place of the sensor are those of the record; intervals hold only for a model that is right."
+        )
+    for of, note in zip(over, _notes(found, over), strict=True):
+        if note:
+            sentences.append(f"{of.key}: {note}.")
+    return sentences
+
+
+def _notes(found: Fit, over: Sequence[Range]) -> list[str]:
+    """What is doubtful about the value of each key, empty where nothing is."""
+    notes = []
+    for of, estimate, at_end in zip(over, found.estimates, found.at_end, strict=True):
+        if at_end:
+            notes.append("lies at an end of its range: widen it, or do not trust its interval")
+        elif estimate.high - estimate.low > of.high - of.low:
+            notes.append("cannot be told from this record: its interval is wider than its range")
+        elif estimate.low < of.low or estimate.high > of.high:
+            notes.append("its interval reaches beyond its range")
+        else:
+            notes.append("")
+    return notes
+
+
+def _begins(found: Fit) -> str:
+    """What the lag means."""
+    lag = found.lag.value
+    return f"the run begins {lag:.3g} s into the record" if lag > 0 else f"the record begins {-lag:.3g} s into the run"
 
 
 def _estimates(found: Fit) -> list[tuple[str, Estimate]]:
@@ -69,8 +110,12 @@ def _estimates(found: Fit) -> list[tuple[str, Estimate]]:
     ]
 
 
-def _rows(found: Fit) -> list[list[str]]:
-    return [[name, f"{of.value:.4g}", f"{of.low:.4g}", f"{of.high:.4g}"] for name, of in _estimates(found)]
+def _rows(found: Fit, over: Sequence[Range]) -> list[list[str]]:
+    notes = [*_notes(found, over), _begins(found), ""]
+    return [
+        [name, f"{of.value:.4g}", f"{of.low:.4g}", f"{of.high:.4g}", note]
+        for (name, of), note in zip(_estimates(found), notes, strict=True)
+    ]
 
 
 def drawing(found: Fit) -> Drawing:

@@ -8,12 +8,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
-from rich.table import Column, Table
+from rich.table import Table
 
 from app.format.markup import element
 from app.reports.drawings import WIDTH, Drawing, Look, panels, plain_axes
 from app.reports.html_page import wide_table
-from app.reports.studies.common import csv_bytes, figure_label, legend, result_files
+from app.reports.studies.common import csv_bytes, figure_label, legend, result_files, terminal_table
 from model.config.config import Config
 from model.study.limits import AT_ONCE, NEVER, SPEEDS, Limit
 
@@ -58,12 +58,7 @@ def files(found: Sequence[Limit], bases: Sequence[Config]) -> dict[str, bytes]:
 
 def table(found: Sequence[Limit], bases: Sequence[Config]) -> Table:
     """For the terminal."""
-    shown = Table(
-        *(Column(head, overflow="fold") for head in ("Vehicle", "Ground", "rms or height, mm", "Speed, km/h"))
-    )
-    for row in _shown(found, bases):
-        shown.add_row(*row)
-    return shown
+    return terminal_table(SHOWN, list(_shown(found, bases)))
 
 
 def _row(limit: Limit, bases: Sequence[Config]) -> tuple[object, ...]:

@@ -7,12 +7,20 @@ from collections.abc import Iterator, Sequence
 from itertools import accumulate
 
 from matplotlib.figure import Figure
-from rich.table import Column, Table
+from rich.table import Table
 
 from app.format.markup import element
 from app.reports.drawings import WIDTH, Drawing, Look, panels, plain_axes
 from app.reports.html_page import wide_table
-from app.reports.studies.common import csv_bytes, figure_label, key_label, legend, number_cell, result_files
+from app.reports.studies.common import (
+    csv_bytes,
+    figure_label,
+    key_label,
+    legend,
+    number_cell,
+    result_files,
+    terminal_table,
+)
 from model.config.config import Config, dump_config
 from model.config.parameters import number_text
 from model.study.design import Range
@@ -57,10 +65,9 @@ def files(found: Optimum, bases: Sequence[Config], over: Sequence[Range], mean: 
 def table(found: Optimum) -> Table:
     """For the terminal."""
     heads, rows = _table(found)
-    shown = Table(*(Column(head, overflow="fold") for head in heads))
-    for row in rows:
-        shown.add_row(*row)
-    return shown
+    if len(found.front) == 1:  # few columns: values stand below each other
+        heads, *rows = [list(line) for line in zip(heads, *rows, strict=True)]
+    return terminal_table(heads, rows)
 
 
 def _assignments(solution: Solution) -> str:

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from rich.table import Column, Table
+from rich.table import Table
 
 from app.format.markup import element
 from app.reports.drawings import SMALL, WIDTH, Drawing, Look, plain_axes
 from app.reports.html_page import wide_table
-from app.reports.studies.common import csv_bytes, figure_label, key_label, legend, result_files
+from app.reports.studies.common import csv_bytes, figure_label, folded, key_label, legend, result_files
 from model.config.config import Config
 from model.config.parameters import number_text
 from model.study.design import Range
@@ -61,9 +61,14 @@ def _shown(row: tuple[object, ...]) -> list[str]:
 
 def table(found: Sensitivity) -> Table:
     """For the terminal."""
-    shown = Table(*(Column(head, overflow="fold") for head in SHOWN))
+    shown = Table(*SHOWN[1:], box=None, pad_edge=False)  # lines between its columns would make it too wide
+    last = ""
     for row in rows(found):
-        shown.add_row(*_shown(row))
+        figure, key, *numbers = _shown(row)
+        if figure != last:
+            shown.add_row(figure, style="bold")
+        shown.add_row(folded(key), *(number.replace(" … ", "…") for number in numbers))
+        last = figure
     return shown
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -15,13 +16,12 @@ from typer.testing import CliRunner
 
 from app import cli
 from model.study.table import read_table
-from tests.app.commands.support import ROOT, done, started
+from tests.app.commands.support import PATIENCE, ROOT, done_here, started
 
 pytest.importorskip("distributed")
-PATIENCE = 200.0  # s
 STUDY = (
     "sweep", "--vary", "drive.speed_kmh=10:30:60", "--figures", "peak_load,energy_error", "--set",
-    "simulation.duration=5", "--out",
+    "simulation.duration=20", "--out",
 )  # fmt: skip
 
 
@@ -78,10 +78,11 @@ def cluster(tmp_path) -> Iterator[Cluster]:
 
 
 def test_a_study_on_a_cluster_is_the_same_to_the_last_digit_though_a_worker_is_killed(cluster, tmp_path):
-    assert done(*STUDY, "here.parquet", folder=tmp_path)[0] == 0
+    assert done_here(*STUDY, "here.parquet", folder=tmp_path)[0] == 0
     process = started(*STUDY, "there.parquet", "--scheduler", cluster.address, folder=tmp_path)
     part = tmp_path / "there.parquet.part"
     wait_until(lambda: process.poll() is not None or (part.exists() and part.read_text().count("\n") > 3))
+    cluster.workers[0].send_signal(signal.SIGSTOP)  # so that the study cannot end before it is killed
     assert process.poll() is None, process.communicate()
     cluster.workers[0].kill()
     told, said = process.communicate(timeout=PATIENCE)

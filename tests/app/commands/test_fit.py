@@ -42,6 +42,18 @@ def test_a_damper_is_found_with_its_interval(record, tmp_path):
     assert "0.2" in (tmp_path / "found" / "index.html").read_text().partition("are left (rms)")[0][-20:]
 
 
+def test_what_is_doubtful_is_told_beside_the_value_and_on_the_page(record, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    command = ["fit", "paper", *SET, "--measured", record.name, "--over", f"{DAMPING}=12000:20000", "--out", "found"]
+    result = CliRunner().invoke(cli.cli, command)
+    assert result.exit_code == 0
+    doubt = "lies at an end of its range: widen it, or do not trust its interval"
+    assert f"{DAMPING}: {doubt}." in result.stderr
+    assert doubt in result.stdout
+    assert "s into the record" in result.stdout
+    assert doubt in (tmp_path / "found" / "index.html").read_text()
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

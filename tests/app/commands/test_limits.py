@@ -49,6 +49,21 @@ def test_where_there_is_no_limit_it_is_said_why(power, why):
     assert limit.drawn == (80.0 if why == NEVER else None)
 
 
+def test_slow_runs_are_left_out_where_the_figure_is_far_below_its_bound():
+    assert limit_of(lambda v: 6 * (v / 40) ** 2).speeds[0] == 15
+    assert limit_of(lambda v: 6 * (v / 3.5) ** 2).speeds[0] == 2
+    hump = limit_of(lambda v: 7 if v == 6 else 5 if 6 < v < 20 else 1)
+    assert (hump.speeds[0], hump.down_again) == (4, 8)
+
+
+def test_over_half_rounds_a_short_rise_at_high_speed_is_found():
+    def evaluate(jobs):
+        return [Outcome("complete", (3.0 if 64 < job.changes["drive.speed_kmh"] < 70 else 1.0,)) for job in jobs]
+
+    limit = limits([(PAPER, half_round_grounds(PAPER)[:1])], evaluate)[0]
+    assert 62 < limit.speed < 68
+
+
 def test_what_diverges_beyond_the_limit_does_no_harm():
     assert limit_of(lambda v: 6 * (v / 10) if v < 50 else None).speed == pytest.approx(10, rel=1e-3)
 

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from app import cli
 from model import load_config
-from tests.app.commands.support import done
+from tests.app.commands.support import done, done_here
 
 DAMPING = "vehicle.road_suspension.damping"
 SHORT = ("--set", "simulation.duration=1", "--over", f"{DAMPING}=2000:20000", "--generations", "1", "--out", "found")
@@ -30,7 +30,7 @@ def test_the_best_is_written_as_a_configuration(tmp_path):
 
 def test_every_point_of_a_front_is_a_configuration(tmp_path):
     command = ("optimise", "paper", "--minimise", "absorbed_power", "--minimise", "peak_load", *SHORT)
-    assert done(*command, folder=tmp_path)[0] == 0
+    assert done_here(*command, folder=tmp_path)[0] == 0
     rows = list(csv.DictReader((tmp_path / "found" / "front.csv").open()))
     files = sorted((tmp_path / "found" / "front").iterdir())
     assert len(rows) == len(files) > 0
@@ -39,7 +39,7 @@ def test_every_point_of_a_front_is_a_configuration(tmp_path):
     assert all(load_config(file).value(DAMPING) for file in files)
     first = (tmp_path / "found" / "front.csv").read_bytes()
     runs = (tmp_path / "found" / "runs.jsonl").read_bytes()
-    assert done(*command, "--resume", folder=tmp_path)[0] == 0
+    assert done_here(*command, "--resume", folder=tmp_path)[0] == 0
     assert (tmp_path / "found" / "front.csv").read_bytes() == first
     assert (tmp_path / "found" / "runs.jsonl").read_bytes() == runs
 
@@ -52,7 +52,6 @@ def test_every_point_of_a_front_is_a_configuration(tmp_path):
         ((*SHORT[2:4], "--minimise", "shok"), "--minimise shok: there is no such figure; the nearest one is shock"),
         ((*SHORT[2:4], "--minimise", "shock", "--subject-to", "pitch<3"), "--subject-to pitch<3: give FIGURE<=VALUE"),
         ((*SHORT[2:4], "--minimise", "shock", "--roads", "nowhere"), "nor a preset of that name"),
-        ((*SHORT, "--minimise", "shock", "--subject-to", "peak_load<=0.1"), "no point can be run and keeps the bounds"),
     ],
 )
 def test_bad_input_is_refused(arguments, words, tmp_path, monkeypatch):
@@ -60,3 +59,16 @@ def test_bad_input_is_refused(arguments, words, tmp_path, monkeypatch):
     result = CliRunner().invoke(cli.cli, ["optimise", "paper", *arguments])
     assert result.exit_code == 2
     assert words in result.stderr
+    assert not (tmp_path / "found").exists()
+
+
+def test_where_no_point_keeps_the_bounds_the_runs_are_kept_for_other_bounds(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    command = ["optimise", "paper", *SHORT, "--minimise", "shock", "--subject-to"]
+    result = CliRunner().invoke(cli.cli, [*command, "peak_load<=0.1"])
+    assert result.exit_code == 2
+    assert "no point can be run and keeps the bounds" in result.stderr
+    assert "The runs are kept in found/runs.jsonl.part" in result.stderr
+    kept = (tmp_path / "found" / "runs.jsonl.part").read_text()
+    assert CliRunner().invoke(cli.cli, [*command, "peak_load<=60", "--resume"]).exit_code == 0
+    assert (tmp_path / "found" / "runs.jsonl").read_text().startswith(kept)

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from app import cli
 from app.commands import analysis
-from tests.app.commands.support import done
+from tests.app.commands.support import done, done_here
 
 COMMAND = (
     "sensitivity", "paper", "--set", "simulation.duration=2", "--over", "drive.speed_kmh=10:20",
@@ -30,7 +30,7 @@ def test_page_figure_and_table_are_written_and_a_second_time_takes_no_runs(tmp_p
     assert {tuple(line.split(",")[:2]) for line in lines[1:]} == {
         (figure, key) for figure in ("absorbed_power", "peak_load") for key in ("drive.speed_kmh", "road.amplitude")
     }
-    assert done(*COMMAND, "--resume", folder=tmp_path)[0] == 0
+    assert done_here(*COMMAND, "--resume", folder=tmp_path)[0] == 0
     assert (folder / "table.csv").read_bytes() == first["table.csv"]
     assert (folder / "runs.jsonl").read_bytes() == first["runs.jsonl"]
 
@@ -51,6 +51,7 @@ def test_bad_input_is_refused(arguments, words, tmp_path):
     result = CliRunner().invoke(cli.cli, ["sensitivity", "paper", *arguments, "--out", str(tmp_path / "found")])
     assert result.exit_code == 2
     assert words in result.stderr
+    assert not (tmp_path / "found").exists()
 
 
 def test_ctrl_c_keeps_the_runs(tmp_path, monkeypatch):
@@ -62,5 +63,15 @@ def test_ctrl_c_keeps_the_runs(tmp_path, monkeypatch):
     monkeypatch.setattr(analysis, "interrupt", interrupted)
     result = CliRunner().invoke(cli.cli, COMMAND)
     assert result.exit_code == 130
-    assert "Interrupted: 1 runs are kept in found/runs.jsonl; go on with --resume." in result.stderr
-    assert [path.name for path in (tmp_path / "found").iterdir()] == ["runs.jsonl"]
+    assert "Interrupted: what was done is kept in found/runs.jsonl.part; go on with --resume." in result.stderr
+    assert [path.name for path in (tmp_path / "found").iterdir()] == ["runs.jsonl.part"]
+    kept = (tmp_path / "found" / "runs.jsonl.part").read_bytes()
+    assert kept.count(b"\n") == 1
+    again = CliRunner().invoke(cli.cli, COMMAND)
+    assert again.exit_code == 2
+    assert "found/runs.jsonl.part: holds the runs of a study that was stopped; go on with --resume" in again.stderr
+    assert (tmp_path / "found" / "runs.jsonl.part").read_bytes() == kept
+    (tmp_path / "found" / "runs.jsonl.part").write_text("no runs\n")
+    other = CliRunner().invoke(cli.cli, [*COMMAND, "--resume"])
+    assert other.exit_code == 2
+    assert "holds no runs of a study; delete it" in other.stderr

@@ -14,9 +14,9 @@ from typer.testing import CliRunner
 from app import cli
 from model import Trajectory
 from model.study.table import KEY, read_table
-from tests.app.commands.support import done, started
+from tests.app.commands.support import PATIENCE, done, done_here, started, waiting
 
-LONG = ("sweep", "--vary", "drive.speed_kmh=10:30:60", "--figures", "shock,peak_load.R2", "--out", "table.parquet")
+LONG = ("sweep", "--vary", "drive.speed_kmh=10:30:24", "--figures", "shock,peak_load.R2", "--out", "table.parquet")
 SHORT = (*LONG[:2], "drive.speed_kmh=10:30:5", *LONG[3:], "--set", "simulation.duration=1")
 ROWS = 6  # that a study has written when it is stopped
 
@@ -31,15 +31,17 @@ def refused(*arguments: object) -> str:
 
 def stopped(folder: Path, number: int) -> tuple[int, str]:
     """Exit status and words of a long study that gets a signal in its midst."""
-    process = started(*LONG, folder=folder)
+    process = started(*LONG, folder=folder, program=("-c", waiting(ROWS + 2) + "from app.__main__ import main; main()"))
     part = folder / "table.parquet.part"
-    end = time.monotonic() + 60
+    end = time.monotonic() + PATIENCE
     while not part.exists() or part.read_text().count("\n") < ROWS:
         assert process.poll() is None, process.communicate()
         assert time.monotonic() < end
         time.sleep(0.01)
     process.send_signal(number)
-    told, said = process.communicate(timeout=60)
+    (folder / "go").touch()
+    told, said = process.communicate(timeout=PATIENCE)
+    (folder / "go").unlink()
     return process.returncode, told + said
 
 
@@ -47,7 +49,7 @@ def stopped(folder: Path, number: int) -> tuple[int, str]:
 def whole(tmp_path_factory):
     """The long study, done without a stop."""
     folder = tmp_path_factory.mktemp("whole")
-    assert done(*LONG, folder=folder)[0] == 0
+    assert done_here(*LONG, folder=folder)[0] == 0
     return read_table(folder / "table.parquet")
 
 
@@ -66,14 +68,14 @@ def test_a_table_tells_what_made_it(tmp_path):
 def test_what_a_kill_leaves_goes_on_to_the_same_table(tmp_path, whole):
     assert stopped(tmp_path, signal.SIGKILL)[0] == -signal.SIGKILL
     assert [path.name for path in tmp_path.iterdir()] == ["table.parquet.part"]
-    status, _, said = done(*LONG, folder=tmp_path)
+    status, _, said = done_here(*LONG, folder=tmp_path)
     assert (status, said) == (
         2,
         "table.parquet.part: holds the runs of a study that was stopped; go on with --resume, or delete it\n",
     )
-    status, told, said = done(*LONG, "--resume", folder=tmp_path)
-    assert (status, told) == (0, "60 of 60 runs are in table.parquet.\n")
-    assert said.endswith("of 60 runs are there already.\n")
+    status, told, said = done_here(*LONG, "--resume", folder=tmp_path)
+    assert (status, told) == (0, "24 of 24 runs are in table.parquet.\n")
+    assert said.endswith("of 24 runs are there already.\n")
     assert read_table(tmp_path / "table.parquet").equals(whole)
     assert [path.name for path in tmp_path.iterdir()] == ["table.parquet"]
 
@@ -81,19 +83,23 @@ def test_what_a_kill_leaves_goes_on_to_the_same_table(tmp_path, whole):
 def test_ctrl_c_keeps_what_is_done(tmp_path, whole):
     status, words = stopped(tmp_path, signal.SIGINT)
     assert status == 130
-    assert "of 60 runs are in table.parquet." in words
+    assert "of 24 runs are in table.parquet." in words
     part = read_table(tmp_path / "table.parquet")
-    assert ROWS - 2 <= part.num_rows < 60
+    assert ROWS - 2 <= part.num_rows < 24
     assert part.equals(whole.slice(0, part.num_rows))
-    assert done(*LONG, "--resume", folder=tmp_path)[0] == 0
+    status, _, said = done_here(*LONG, folder=tmp_path)
+    assert status == 2
+    assert said.startswith(f"table.parquet: holds {part.num_rows} of 24 runs of a study that was stopped; go on with")
+    assert read_table(tmp_path / "table.parquet").equals(part)
+    assert done_here(*LONG, "--resume", folder=tmp_path)[0] == 0
     assert read_table(tmp_path / "table.parquet").equals(whole)
 
 
 def test_a_study_of_which_no_run_comes_to_its_end(tmp_path):
     heavy = ("--set", "vehicle.imaginary_suspension.preload_force=60000")
-    status, told, said = done(*SHORT, *heavy, folder=tmp_path)
+    status, told, said = done_here(*SHORT, *heavy, folder=tmp_path)
     assert status == 3
-    assert told == "5 of 5 runs are in table.parquet; 5 did not come to their end: see the column status.\n"
+    assert told == "5 of 5 runs are in table.parquet; incomplete: 5, see the column status.\n"
     assert said == "No run came to its end.\n"
     assert all(
         text.startswith("no rest pose: ") for text in read_table(tmp_path / "table.parquet")["status"].to_pylist()

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from app.format.assets import asset
+from app.format.assets import EXPLORER, asset
 
 ROOT = Path(__file__).parents[3]
 
@@ -20,6 +21,11 @@ def test_an_asset_is_the_text_of_its_file() -> None:
 def test_a_missing_one_is_named() -> None:
     with pytest.raises(FileNotFoundError, match=r"assets/no_such_file"):
         asset("no_such_file")
+
+
+def test_the_explorer_asks_for_those_that_its_panels_use() -> None:
+    sources = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "app" / "panels").glob("*.py"))
+    assert set(re.findall(r'asset\("([^"]+)"\)', sources)) == set(EXPLORER)
 
 
 def test_assets_are_found_from_any_folder(tmp_path: Path) -> None:

@@ -40,6 +40,8 @@ def test_typed_texts() -> None:
     assert file_value(positions, "1.75, 1.05,0.35") == (1.75, 1.05, 0.35)
     assert file_value(positions, "[1.75; 1.05]") == (1.75, 1.05)
     assert file_value(PARAMETER[STIFFNESS], "60, 70.5") == (60000.0, 70500.0)
+    assert file_value(PARAMETER[STIFFNESS], "60 70.5") == (60000.0, 70500.0)
+    assert file_value(start, "60 70.5") == "60 70.5"
     assert file_value(PARAMETER["simulation.rtol"], "1e-5") == 1e-5
 
 
@@ -74,7 +76,12 @@ def test_a_refusal_has_the_unit_of_the_basis() -> None:
         ({"road.start": "abc"}, "Start of road: 'abc' is not allowed. Give -50 to 1000 m."),
         ({"road.amplitude": 0.5, "road.wavelength": 0.3}, "Amplitude: must not be greater than the wavelength, 0.3 m."),
         ({"drive.speed_kmh": None}, "Speed: a value is needed. Give 0.5 to 100 km/h."),
-        ({"simulation.duration": 600}, "Output rate: 600 s at 200 samples a second are more than the 100000 samples"),
+        (
+            {"simulation.duration": 600},
+            "Output rate: 600 s at 200 samples a second are more than the 100000 samples that are allowed; 166 a "
+            "second, or 500 s, would do.",
+        ),
+        ({"drive.speed_kmh": (1.0, 5.0)}, "Speed: one number is needed, with a point: 1.5, not 1,5. Give 0.5 to 100"),
         ({STIFFNESS: (0.0, 5e3)}, "Road stiffness: 0, 5 kN/m is not allowed. Give 0.01 to 100000 kN/m, for each road"),
         ({"vehicle.road_wheels.count": 2.5}, "Road wheels: 2.5 is not allowed; give a whole number from 2 to 20."),
     ],

@@ -70,8 +70,10 @@ def test_a_list_is_a_text_and_a_number_again(server: viser.ViserServer) -> None:
     controls.show(PAPER)
     assert (control._one.visible, control._list.visible) == (True, False)
     assert control.value == 75530
+    control._list.value = "60 60 70 70 80 80.0"
     controls.show(config)
     assert control._list.visible
+    assert control._list.value == "60, 60, 70, 70, 80, 80"
 
 
 def test_controls_of_other_roads_go_and_their_sliders_turn_grey(server: viser.ViserServer) -> None:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import html
 import re
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,7 +19,7 @@ from app.reports import run_report as report
 from app.reports.drawings import LIGHT_LOOK, Drawing
 from app.reports.run_report import report_page, ride_rows
 from model import load_config, simulate
-from model.analysis.ride import summary
+from model.analysis.ride import Summary
 from model.config.config import parse_config
 from model.simulation.trajectory import Trajectory
 
@@ -84,7 +82,7 @@ def test_all_texts_are_escaped(page):
 
 
 def test_figures_and_checks(page, fast):
-    of = summary(fast)
+    of = Summary(fast)
     assert ("Vertical acceleration, rms", figure_text(of.acceleration_rms), "m/s²") in ride_rows(fast)
     for row in ride_rows(fast):
         assert f"<dt>{row.label}</dt><dd>{row.value}" in page
@@ -173,19 +171,3 @@ def test_bad_input_is_said_before_computing(tmp_path, monkeypatch, name, said):
     assert result.exit_code == 2
     assert said in result.stderr
     assert trackride("report", "--set", "drive.speed_kmh=500", "--out", tmp_path / "r.html").exit_code == 2
-
-
-def test_what_makes_reports_loads_no_viser_and_no_panel():
-    """All modules of the model and of these folders, really imported; nobody needs a browser for a report."""
-    program = """
-import importlib, pkgutil, sys
-for folder in ("model", "app.format", "app.plots", "app.tabs", "app.reports"):
-    package = importlib.import_module(folder)
-    for module in pkgutil.walk_packages(package.__path__, folder + "."):
-        importlib.import_module(module.name)
-print(*sys.modules)
-"""
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    loaded = set(done.stdout.split())
-    assert {"app.reports.paper.page", "app.tabs.trust", "model.paper.study"} <= loaded
-    assert not [name for name in loaded if name.split(".")[0] == "viser" or name.startswith("app.panels")]

@@ -24,7 +24,7 @@ from app.reports.sheet import BOTTOM, compose, stamped_figure
 from app.reports.sheet_page import DPI, HEIGHT, MARGIN, WIDTH, Sheet
 from app.view3d.meshes.hull import PAINT
 from model import load_config, simulate
-from model.analysis.ride import summary
+from model.analysis.ride import Summary
 from model.analysis.signals import window
 from model.config.config import Config
 from model.simulation.trajectory import Trajectory
@@ -128,8 +128,8 @@ def test_without_a_baseline_changes_are_against_the_papers_vehicle(paper, soft):
 def test_the_ride_figures_stand_beside_the_baselines(paper, soft):
     sheet = compose(soft, paper, None, "Title")
     for run in (paper, soft):
-        assert figure_text(summary(run).acceleration_rms) in words(sheet)
-        felt = summary(run).seat
+        assert figure_text(Summary(run).acceleration_rms) in words(sheet)
+        felt = Summary(run).seat
         assert felt is not None
         assert {figure_text(value) for value in (felt.shock, felt.dose, felt.transient)} <= set(words(sheet))
         assert figure_text(run.normal_load[:, 0].max() / 1e3) in words(sheet)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -70,15 +71,15 @@ def test_a_hitch_is_not_made_up_for() -> None:
 
 
 def test_an_hour_at_eight_times_real_time_neither_drifts_nor_grows() -> None:
-    """A minute of it here; the whole hour is measured by `python -m tests.benchmarks.drive`."""
+    """Almost three minutes of it here; the whole hour is measured by `python -m tests.benchmarks.drive`."""
     clock = Clock()
     driver = Driver(PAPER.replace({SPEED: 30}), clock)
     sizes, objects = [], []
-    frames = 420
+    frames = 210
     for k in range(frames):
         clock.now += 0.1
         state = driver.frame(8.0)
-        if k % 140 == 139:
+        if k % 70 == 69:
             gc.collect()
             sizes.append(len(state.past.t))
             objects.append(len(gc.get_objects()))
@@ -209,11 +210,11 @@ def test_standing_resuming_and_starting_anew(monkeypatch: pytest.MonkeyPatch) ->
     stood = next_of(runner, Driven, lambda outcome: outcome.state.stands).state.time
     wait_for(lambda: waits[-1:] == [False], "the thread to wait")
     assert runner.take() == []
-    runner.drive(1.0)
+    runner.drive(0.02)  # so slow that nobody can look too late
     resumed = next_of(runner, Driven)
-    assert resumed.state.time - stood < 0.3
+    assert 0 <= resumed.state.time - stood < 0.3
     assert not resumed.state.stands
-    runner.drive(1.0, anew=True)
+    runner.drive(0.02, anew=True)
     assert next_of(runner, Driven, lambda outcome: outcome.state.time < 0.2)
     runner.close()
 
@@ -297,8 +298,9 @@ def test_a_tab_drives_on_with_sliders_plots_and_player(explore: Any, open_tab: A
     stood = len(view.roads)
     pass_frames(explorer)
     assert len(view.roads) == stood
+    before = len(view.runs)
     tab.use("Playback", "|◀ Restart")
-    wait_for(lambda: view.runs[-1].t[-1] < 0.2)
+    wait_for(lambda: any(run.t[-1] < 0.2 for run in view.runs[before:]), "the start")
     tab.press("Drive on and on, or back to the run")
     wait_for(lambda: tab.shows_run(3))
     wait_for(lambda: np.isclose(tab.charts()[0]["data"][1][0], 25))
@@ -344,7 +346,7 @@ def test_a_drive_that_diverges_says_so_and_offers_a_restart(
     wait_for(lambda: tab.shows_run(1))
     tab.use("Mode", "○ Drive")
     notice = wait_for(lambda: tab.notifications, "a notification")[-1]
-    assert "diverged at t = 0.3" in notice["body"].lower()
+    assert re.search(r"diverged at t = 0\.[34]", notice["body"].lower())  # a frame is 0.1 s long at most
     assert "Restart" in notice["body"]
     wait_for(lambda: "ended" in tab.widget("Driven")["value"])
     monkeypatch.setattr(LiveDrive, "advance", whole)

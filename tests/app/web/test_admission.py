@@ -28,7 +28,7 @@ HERE = "127.0.0.1"
 def ask(explorer: Explorer, path: str = "/", host: str | None = None, **more: str) -> tuple[int, str]:
     """Status and text of the answer to a request; host: by what name it asks, without the port."""
     port = explorer.server.get_port()
-    connection = HTTPConnection(HERE, port, timeout=10)
+    connection = HTTPConnection(HERE, port, timeout=60)
     try:
         connection.putrequest("GET", path, skip_host=True)
         for name, value in {"Host": f"{host or HERE}:{port}", **more}.items():
@@ -123,6 +123,8 @@ def test_all_spellings_of_everywhere_are_not(host: str) -> None:
     assert listening.everywhere
     assert not listening.local
     assert listening.browsable == ("[::1]" if ":" in host else HERE)
+    others = listening.from_elsewhere  # of the same family as it listens on
+    assert others is None or others.startswith("[") == (":" in host)
 
 
 def test_an_address_of_this_machine_is_not_local() -> None:

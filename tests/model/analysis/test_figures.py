@@ -7,7 +7,7 @@ import pytest
 
 from model import load_config, simulate
 from model.analysis.figures import AIR_TIME, DRIFT, ENERGY_ERROR, FIGURES, Row, comparison, figures_by_name, overall
-from model.analysis.ride import imaginary_share, lift_offs, summary
+from model.analysis.ride import Summary, imaginary_share, lift_offs
 from model.simulation.trajectory import Trajectory
 from tests.model.analysis.test_ride import FLAT, RATE, standing
 
@@ -22,7 +22,7 @@ def test_figures_by_name_are_those_of_each_wheel_and_of_the_worst():
     run = standing()
     run.normal_load[2, 3], run.normal_load[3:, 8] = 9000, 0
     run.normal_load[1, :2] = 0
-    of = summary(run)
+    of = Summary(run)
     found = figures_by_name(of)
     assert {figure.name for figure in FIGURES} <= set(found)
     assert (found["peak_load"], found["peak_load.R4"], found["peak_load.I1"]) == (9, 9, 5)
@@ -34,7 +34,7 @@ def test_figures_by_name_are_those_of_each_wheel_and_of_the_worst():
 
 def test_the_checks_of_the_computation_are_figures_too():
     run = simulate(load_config("half_round"))
-    found = figures_by_name(summary(run))
+    found = figures_by_name(Summary(run))
     assert found["energy_error"] == pytest.approx(100 * run.energy_error)
     assert found["drift"] == pytest.approx(1e6 * run.constraint_residual.max())
     assert not {row.figure for row in comparison(run, None)} & {DRIFT.label, ENERGY_ERROR.label}
@@ -42,7 +42,7 @@ def test_the_checks_of_the_computation_are_figures_too():
 
 def test_what_cannot_be_told_is_none_and_stays_in_the_comparison():
     slow = standing(FLAT.replace({"simulation.output_rate": 50}))
-    found = figures_by_name(summary(slow))
+    found = figures_by_name(Summary(slow))
     cannot = {name for name, value in found.items() if value is None} - {"energy_error"}  # not known of any of these
     assert cannot == {"shock", "weighted_acceleration", "vibration_dose", "transient", "absorbed_power"}
     row = rows(slow, standing())["Absorbed power at the seat"]
@@ -84,7 +84,7 @@ def test_a_comparison_gives_now_baseline_and_change_in_readers_units():
 
     assert row("Vertical acceleration, rms") == ("m/s²", 1, 2, -50)
     assert row("Vertical acceleration, peak") == ("m/s²", 1, 2, -50)
-    assert row("Weighted acceleration at the seat")[:2] == ("m/s²", pytest.approx(summary(now).seat.total))
+    assert row("Weighted acceleration at the seat")[:2] == ("m/s²", pytest.approx(Summary(now).seat.total))
     assert row("Absorbed power at the seat")[3] == pytest.approx(-75, abs=0.5)
     assert row("Pitch, peak to peak") == ("°", pytest.approx(5), pytest.approx(4), pytest.approx(25))
     assert row("Peak load, I1") == ("kN", 7.5, 5, pytest.approx(50))
@@ -96,7 +96,7 @@ def test_a_comparison_gives_now_baseline_and_change_in_readers_units():
     )
     assert row("Time in the air, R2") == ("s", pytest.approx(3 / RATE), pytest.approx(2 / RATE), pytest.approx(50))
     # R3: the hull's pitch of sample 3 moves its wheels too, so the figures are those of the summary
-    up, down = summary(now).travel_up[2], summary(now).travel_down[2]
+    up, down = Summary(now).travel_up[2], Summary(now).travel_down[2]
     assert row("Suspension travel, R3")[:2] == ("mm", pytest.approx(1000 * (up - down)))
 
     def share_of(run: Trajectory) -> float:

@@ -190,4 +190,4 @@ def test_the_modes_are_quick_enough_for_every_settled_run():
         vehicle_modes(PAPER)
         return time.process_time() - began
 
-    assert min(seconds() for _ in range(5)) < 0.06
+    assert min(seconds() for _ in range(5)) < 0.12

@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 
 from model import load_config, simulate
+from model.analysis.comfort import ride_comfort
 from model.analysis.energy import energy_balance
 from model.analysis.ride import (
+    Summary,
     imaginary_share,
     motion_warnings,
     penetration,
-    summary,
     suspension_travel,
     warnings,
     wheel_state,
@@ -63,7 +64,7 @@ def whats(run: Trajectory) -> list[str]:
 
 
 def test_a_standing_vehicle():
-    figures = summary(standing())
+    figures = Summary(standing())
     assert figures.names == ["R1", "R2", "R3", "R4", "R5", "R6", "I1", "I2", "I3", "I4", "I5"]
     assert (figures.load_min == 5000).all()
     assert (figures.load_mean == 5000).all()
@@ -81,7 +82,7 @@ def test_a_standing_vehicle():
 def test_loads_and_time_in_the_air():
     run = standing()
     run.normal_load[:, 2] = [0, 1000, 2000, 0, 7000]
-    figures = summary(run)
+    figures = Summary(run)
     assert (figures.load_min[2], figures.load_mean[2], figures.load_max[2]) == (0, 2000, 7000)
     assert figures.air_time[2] == pytest.approx(2 / RATE)
     assert figures.air_time[3] == 0
@@ -102,7 +103,7 @@ def test_acceleration_is_the_hulls_vertical_one():
     run.a[:, 0, 1] = [3, -4, 0, 0]
     run.a[:, 0, 0] = 100
     run.a[:, 1:] = 100
-    figures = summary(run)
+    figures = Summary(run)
     assert figures.acceleration_rms == pytest.approx(2.5)
     assert figures.acceleration_peak == 4
 
@@ -112,7 +113,7 @@ def test_dynamic_load_coefficient_is_the_spread_of_the_load_over_that_at_rest():
     run.normal_load[:, 2] = [4000, 6000, 4000, 6000]
     run.normal_load[:, 3] = 8000
     run.static_load[7] = 0
-    found = summary(run).load_coefficient
+    found = Summary(run).load_coefficient
     assert found[2] == pytest.approx(0.2)
     assert found[3] == 0
     assert np.isnan(found[7])
@@ -122,7 +123,7 @@ def test_pitch_and_drift():
     run = standing(samples=3)
     run.q[:, 0, 2] = [0, 0.1, -0.2]
     run.constraint_residual[:] = [0, 3e-6, 1e-6]
-    figures = summary(run)
+    figures = Summary(run)
     assert (figures.pitch_low, figures.pitch_high, figures.drift) == (-0.2, 0.1, 3e-6)
 
 
@@ -139,7 +140,7 @@ def test_travel_is_seen_from_the_hull():
     expected = np.zeros((4, 6))
     expected[1, 1] = 0.05
     np.testing.assert_allclose(suspension_travel(run), expected, atol=1e-12)
-    figures = summary(run)
+    figures = Summary(run)
     assert (figures.travel_up[1], figures.travel_down[1]) == (pytest.approx(0.05), pytest.approx(0))
 
 
@@ -201,13 +202,13 @@ def test_uneven_wheels_are_in_phase_only_when_every_gap_fits():
 
 
 def test_one_sample_is_enough():
-    assert summary(standing(samples=1)).acceleration_rms == 0
+    assert Summary(standing(samples=1)).acceleration_rms == 0
     assert whats(standing(samples=1)) == []
 
 
 def test_the_papers_run():
     run = simulate(load_config("paper"))
-    figures = summary(run)
+    figures = Summary(run)
     assert figures.acceleration_rms == pytest.approx(0.66, abs=0.02)
     assert figures.imaginary_share == pytest.approx(0.15, abs=0.01)
     assert figures.load_min[0] == 0
@@ -220,7 +221,7 @@ def test_the_papers_run():
 
 def test_means_are_of_the_window_and_the_largest_values_of_the_whole_run():
     run = simulate(load_config("half_round").replace({"simulation.duration": 12}))
-    figures, taken = summary(run), window(run)
+    figures, taken = Summary(run), window(run)
     counts = (run.t >= taken.start) & (run.t <= taken.end)
     assert 400 < counts.sum() < 700
     assert figures.window == taken
@@ -232,7 +233,7 @@ def test_means_are_of_the_window_and_the_largest_values_of_the_whole_run():
     np.testing.assert_array_equal(figures.load_max, run.peaks.load)
     assert figures.acceleration_peak == run.peaks.acceleration
     run.normal_load[-1], run.a[-1, 0, 1] = 1e6, -100
-    at_samples = summary(replace(run, tracked=None))
+    at_samples = Summary(replace(run, tracked=None))
     assert (at_samples.load_max == 1e6).all()
     assert at_samples.acceleration_peak == 100
 
@@ -244,15 +245,23 @@ def test_a_run_that_is_too_short_for_its_figures_says_so():
 
 def test_too_few_samples_for_comfort():
     run = simulate(PAPER.replace({"simulation.output_rate": 10}))
-    assert summary(run).seat is None
+    assert Summary(run).seat is None
     assert "Comfort cannot be told from 10 samples a second" in whats(run)
     assert "200 1/s" in str(warnings(run)[-1])
+
+
+def test_a_hull_that_leans_at_rest():
+    run = standing()
+    run.q[:, :, 2] = np.radians(-27.0)  # arms and all: no arm turns in the hull
+    assert "The hull leans forwards by 27° at rest" in whats(run)
+    run.t[:] += 1.0  # a stretch of a drive does not begin at rest
+    assert not any("leans" in what for what in whats(run))
 
 
 def test_a_crest_factor_above_nine():
     run = standing(samples=2001)
     run.a[1000, 0, 1] = 30.0
-    felt = summary(run).seat
+    felt = Summary(run).seat
     assert felt.crest_factor > 9
     assert whats(run) == [f"The crest factor at the driver's seat is {felt.crest_factor:.1f}"]
     meaning = warnings(run)[0].meaning
@@ -350,6 +359,7 @@ def test_a_random_road_without_waves_long_enough_for_the_speed(vehicle, speed, r
     assert len(said) == (enough is not None)
     if enough is not None:
         assert f"Set longest_wave to {enough} m" in said[0]
+        assert ("and the road's length, 20 m, to no less" in said[0]) == ("road.length" in road)
 
 
 def profile(points: str) -> Config:
@@ -359,7 +369,11 @@ def profile(points: str) -> Config:
 def test_a_profile_that_is_not_reached():
     """One warning, whatever there is besides it."""
     for points in ("500 0, 501 0.1, 600 0", "0 0, 500 0, 501 0.1, 600 0"):
-        (said,) = whats(standing(profile(points)))
+        run = standing(profile(points))
+        (said,) = whats(run)
+        felt = ride_comfort(run)
+        assert felt is not None
+        assert felt.reaction == "not reached"
         assert said == (
             "The run ends before a wheel comes to the profile: it begins at x = 499.95 m, the wheels came to 1.75 m"
         )

@@ -220,6 +220,28 @@ def test_replace_reports_all_faults_as_a_file_does():
     assert "is a section; name one of its keys, such as vehicle.chassis.mass" in messages["vehicle.chassis"]
 
 
+@pytest.mark.parametrize("preset", ["paper", "marder", "half_round", "random_road"])
+def test_a_single_value_that_is_replaced_is_as_if_it_had_been_in_the_file(preset):
+    base = load_config(preset)
+    for key, value in base.values().items() - {("name", base.name)}:
+        nudged = 1.01 * value if isinstance(value, float) else value
+        with suppress(ConfigError):
+            expected = parse_config(dump_config(base.replace({"name": "other", key: nudged})))  # a text: all is checked
+            found = base.replace({key: nudged}).replace({"name": "other"})
+            assert found == expected, key
+            assert dump_config(found) == dump_config(expected)
+            assert hash(found) == hash(expected)
+
+
+def test_a_value_that_no_longer_fits_the_others_is_refused_alone_too():
+    base = load_config("paper")
+    with pytest.raises(ConfigError, match="must not be greater than the wavelength"):
+        base.replace({"road.wavelength": 0.4}).replace({"road.amplitude": 0.5})
+    parts = [{"type": "half_round", "position": 2.8}]
+    with pytest.raises(ConfigError, match=r"road\.parts"):
+        base.replace({"road.type": "sum", "road.parts": parts}).replace({"vehicle.road_wheels.radius": 1.0})
+
+
 def test_replace_drops_the_other_way_to_say_the_same():
     forced = Config().replace({f"{IMAGINARY}.preload_force": 2000})
     assert forced.vehicle.imaginary_suspension.preload_force == 2000

@@ -197,6 +197,14 @@ def test_what_was_read_is_said():
     assert "its first point is a station, and is put 1 m ahead" in said("x [m],z [m]\n12345.6,0\n12350,0\n")
 
 
+def test_units_given_against_the_heading_are_taken_with_a_word():
+    text = "x [m],z [ft]\n0,0\n5,20\n"
+    assert said(text, units=["m", "mm"]).endswith("heights as mm by road.units, though the file says heights in ft")
+    assert said(text, units=["m", "ft"]).endswith("x read as m, heights as ft")
+    assert said("x [m],z [yd]\n0,0\n5,20\n", units=["", "mm"]).endswith("x read as m, heights as mm")
+    assert "by road.units, though the file says x in ft" in said(ERD + "0 0\n1 1\n2 2\n", units=["m"])
+
+
 @settings(max_examples=300, deadline=None)
 @given(
     st.one_of(
@@ -291,6 +299,8 @@ def test_open_crg(kind):
     assert read(crg(kind), columns=["v = 0.5"])[1] == pytest.approx([0.0, 0.025, 0.05, 0.075, 0.1])
     assert read_profile_file(crg(kind)).said.endswith("OpenCRG, v = 0 m, read as m")
     assert "v = 2 m lies off the road, which reaches from -1 to 1 m" in refused(crg(kind), columns=["v=2"])
+    bare = crg(kind).partition(80 * b"$" + b"\n")
+    assert refused(bare[0] + bare[1]).startswith("OpenCRG: 0 points below the header; give 2 to")
 
 
 def test_open_crg_with_a_slope_and_numbered_sections():

@@ -54,6 +54,8 @@ def only_fault(text: str) -> tuple[str, str]:
         (f"{WHEELS}.offset", "2", "the wheels stand at 3.75 to 0.25 m; the centre of mass"),
         ("vehicle.imaginary_wheels.enabled", "2", "give true or false"),
         (f"{ROAD_SPRING}.basis", "axle", "give one of wheel, torsion"),
+        (f"{ROAD_SPRING}.bump_travel", "0.5", "less than 0.4697 m"),
+        (f"{ROAD_SPRING}.rebound_travel", "0.25", "less than 0.2303 m"),
         (f"{ROAD_SPRING}.damping", "[1, 2]", "2 values for 6 road wheels; give 6, or one number for all"),
         ("drive.speed_kmh", "500", "give a number from 0.5 to 100 km/h"),
         ("simulation.duration", "1000000", "from 0.1 to 600 s"),
@@ -100,6 +102,7 @@ def test_each_kind_of_fault(path, value, words):
         ("road", "type: random, roughness_class: I", "road.roughness_class", "give one of A, B, C, D, E, F, G, H"),
         ("road", "type: random, seed: -1", "road.seed", "give a whole number from 0 to 999999"),
         ("road", "type: profile, points: '0 0, 1 x'", "road.points", "point 2: 'x' is no number"),
+        ("road", "type: profile, points: '-3 0, 0 0, 1 0.2, 9 0'", "road.points", "not level under the vehicle"),
         ("road", "type: profile, points: [0, 0]", "road.points", "give points x y, x y, … in m, x growing"),
     ],
 )
@@ -107,6 +110,12 @@ def test_values_that_do_not_fit_each_other(section, values, path, words):
     found, message = only_fault(f"{section}: {{{values}}}")
     assert found == path
     assert words in message
+
+
+@pytest.mark.parametrize("value", [True, 15j])
+def test_what_python_takes_for_a_number_may_be_none(value):
+    with pytest.raises(ConfigError, match=r"drive\.speed_kmh.*is not allowed"):
+        Config().replace({"drive.speed_kmh": value})
 
 
 def test_two_ways_to_say_the_same():

@@ -145,15 +145,21 @@ def test_a_link_may_carry_the_vehicle():
 def test_a_vehicle_that_would_tip_gets_a_message():
     """Wheels 0.7 m apart cannot hold five tonnes 0.95 m up: the weight tips faster than the springs right it."""
     two = PAPER.replace({f"{WHEELS}.count": 2})
-    with pytest.raises(NoEquilibriumError, match=r"unstable.*Stiffen the suspension"):
+    with pytest.raises(NoEquilibriumError, match=r"tips over forwards.*Stiffen the suspension"):
         rest_pose(build_system(two))
     with pytest.raises(NoEquilibriumError):
         simulate(two)
 
 
 def test_a_preload_that_folds_the_arms_gets_a_message():
-    with pytest.raises(NoEquilibriumError, match=r"arms? .*Stiffen the suspension"):
+    with pytest.raises(NoEquilibriumError, match=r"arm of imaginary wheel 5 turns right over, its wheel downwards"):
         rest_pose(build_system(PAPER.replace({"vehicle.imaginary_suspension.preload_force": 6e4})))
+
+
+def test_weak_springs_get_a_message():
+    weak = {f"{ROAD_SPRING}.stiffness": 100.0, f"{IMAGINARY}.stiffness": 10.0, f"{IMAGINARY}.preload_deflection": 0.0}
+    with pytest.raises(NoEquilibriumError, match=r"arm of road wheel 6 turns .*vehicle\.road_suspension\.stiffness"):
+        rest_pose(build_system(PAPER.replace(weak)))
 
 
 CHASSIS = "vehicle.chassis"
@@ -192,6 +198,16 @@ HIDDEN = {
         },
         0.263,
     ),
+    "leaning": (
+        {
+            f"{WHEELS}.count": 3,
+            f"{WHEELS}.spacing": 0.45,
+            f"{WHEELS}.offset": 0.2,
+            f"{ROAD_SPRING}.stiffness": 6e4,
+            "vehicle.imaginary_wheels.enabled": False,
+        },
+        1.218,
+    ),
     "soft": ({f"{ROAD_SPRING}.stiffness": 500.0, f"{IMAGINARY}.stiffness": 500.0}, 0.631),
 }
 
@@ -213,3 +229,14 @@ def test_a_rest_pose_on_one_side_of_a_saddle_is_found_leaning(monkeypatch):
     monkeypatch.setattr("model.dynamics.equilibrium.STARTS", ((0.1, 0.2),))
     q, load = rest_pose(system)
     assert_at_rest(system, q, load)
+
+
+def test_vehicles_that_differ_only_in_motion_share_their_rest_pose():
+    """To the last digit; what matters at rest makes another one."""
+    resting = rest_pose(build_system(PAPER))
+    for changes in ({"drive.speed_kmh": 30}, {"contact.normal_damping": 1e5}, {f"{ROAD_SPRING}.damping": 100}):
+        for mine, other in zip(resting, rest_pose(build_system(PAPER.replace(changes))), strict=True):
+            assert (mine == other).all()
+            assert mine is not other
+    for changes in ({"contact.normal_stiffness": 1e7}, {"vehicle.chassis.mass": 9000}):
+        assert (rest_pose(build_system(PAPER.replace(changes)))[0] != resting[0]).any()

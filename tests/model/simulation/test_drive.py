@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from model import load_config, simulate
-from model.analysis.ride import summary
+from model.analysis.ride import Summary
 from model.dynamics.equilibrium import NoEquilibriumError
 from model.simulation.drive import AHEAD, JOIN_AHEAD, REBASE, LiveDrive
 from model.simulation.integrate import ADVICE, REASON, Status
@@ -161,4 +161,4 @@ def test_a_vehicle_that_cannot_rest_leaves_the_drive_as_it_was():
     drive_on(drive, 0.2)
     assert drive.recent().config == PAPER
     assert drive.recent().t[0] == 0.0
-    assert summary(drive.recent()).names[-1] == "I5"
+    assert Summary(drive.recent()).names[-1] == "I5"

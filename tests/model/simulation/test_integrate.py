@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from model import simulate
+from model import load_config, simulate
 from model.config.config import Config
 from model.config.parameters import INTEGRATORS
 from model.dynamics.equilibrium import rest_pose
@@ -411,3 +411,11 @@ def test_a_run_that_ends_in_its_first_step_has_its_start(integrator):
     np.testing.assert_array_equal(run.samples.v[0, :, 1], -2000.0)
     np.testing.assert_array_equal(run.y, begin)
     assert np.isfinite(run.samples.a[0]).all()
+
+
+def test_a_drive_force_at_its_limit_does_not_stop_a_run_at_a_tight_tolerance():
+    """In the air the force stays where the controller's integral begins to stand still: it ended at 4.68 s."""
+    road = {"road.type": "random", "road.roughness_class": "H", "road.seed": 5}
+    tight = {"simulation.rtol": 1e-9, "simulation.atol": 1e-11}
+    run = simulate(load_config("m113_rs").replace(road | tight | {"drive.speed_kmh": 20, "simulation.duration": 5}))
+    assert run.status == "complete"

@@ -9,7 +9,7 @@ import pytest
 
 from model import load_config, simulate
 from model.analysis.modes import vehicle_modes
-from model.analysis.ride import summary
+from model.analysis.ride import Summary
 from model.dynamics.equilibrium import rest_pose
 from model.dynamics.vehicle import build_system
 
@@ -105,7 +105,7 @@ def test_an_m113_at_rest_rides_harder_than_at_its_assembly_pose():
         config = load_config("m113").replace(changes)
         bounce = vehicle_modes(config).bounce
         ground = {"road.type": "random", "road.roughness_class": "D", "drive.speed_kmh": 30}
-        felt = summary(simulate(config.replace(ground))).seat
+        felt = Summary(simulate(config.replace(ground))).seat
         assert bounce is not None
         assert felt is not None
         found.append((bounce.frequency, felt.absorbed_power))

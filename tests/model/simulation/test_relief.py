@@ -37,3 +37,12 @@ def test_advice_that_is_followed_works(config):
 
 def test_what_is_not_stiff_needs_no_relief():
     assert relief(PAPER, at_rest(PAPER)) == {}
+
+
+def test_a_jammed_wheel_is_named_with_its_place_and_a_way_out():
+    config = load_config(ATTACK / "coherent-127.yaml")
+    run = simulate(config)
+    assert "too many steps" in run.status
+    assert "Wheel R1 is jammed in a corner of the road at x = 2.59 m" in run.advice
+    assert "drive.mode to cruise" in run.advice
+    assert simulate(config.replace({"drive.mode": "cruise"})).complete

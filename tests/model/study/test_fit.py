@@ -41,6 +41,33 @@ def test_intervals_hold_the_truth_in_most_noise_draws():
     assert min(hit.values()) >= 18, hit
 
 
+def test_a_run_that_is_not_right_yet_lies_on_the_event_not_its_quiet_end_over_it():
+    def thrice(changes):
+        return [(np.arange(0, 20, 0.01), np.pad(3 * a, (0, 1400))) for _, a in runs(changes)]
+
+    ((t, a),) = runs([TRUE])
+    found = fit_runs(thrice, (t + LAG, a), OVER)
+    assert abs(found.lag.value - LAG) < 0.2
+    assert found.explained < 0  # three times as large it is worse than no motion, and that is told
+
+
+def test_run_and_record_of_other_rates_are_compared_in_the_band_of_both():
+    ((t, a),) = runs([TRUE])
+    fine = np.arange(0, 5.9, 0.002)
+    noise = np.random.default_rng(5).normal(0, NOISE, len(fine))
+    found = fit_runs(runs, (fine + LAG, np.interp(fine, t, a) + noise), OVER)
+    assert found.low_pass == pytest.approx(40)
+    assert found.rms < 0.6 * NOISE
+    for key, estimate in zip(found.keys, found.estimates, strict=True):
+        assert estimate.low < TRUE[key] < estimate.high
+    assert fit_runs(runs, (t, a), OVER, low_pass=10).low_pass == 10
+
+
+def test_a_record_that_no_run_resembles_is_refused():
+    with pytest.raises(DesignError, match="no run resembles the record"):
+        fit_runs(lambda changes: [(t, 0 * t) for _ in changes], (t := np.arange(0, 4, 0.01), np.sin(t)), OVER)
+
+
 def test_a_vehicle_is_found_in_its_record():
     run = simulate(BASE.replace(TRUE))
     noise = np.random.default_rng(3).normal(0, NOISE, len(run.t))

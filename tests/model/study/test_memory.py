@@ -17,11 +17,11 @@ def test_runs_are_done_once_and_the_same_as_without_memory(tmp_path):
     memory = Memory(tmp_path / "runs", "1", on_run=lambda: ran.append(0))
     assert memory(JOBS) == [done(job) for job in JOBS]
     assert len(ran) == 3
-    memory.close()
+    memory.finish()
     content = (tmp_path / "runs").read_text()
     again = Memory(tmp_path / "runs", "1", go_on=True, on_run=lambda: ran.append(0))
     assert again(JOBS) == [done(job) for job in JOBS]
-    again.close()
+    again.finish()
     assert len(ran) == 3
     assert (tmp_path / "runs").read_text() == content
 
@@ -48,9 +48,9 @@ def test_a_stop_keeps_what_is_done_and_a_half_written_line_is_done_again(tmp_pat
     with pytest.raises(StoppedError):
         memory(JOBS)
     memory.close()
-    content = (tmp_path / "runs").read_text()
+    content = (tmp_path / "runs.part").read_text()
     assert content.count("\n") == 2
-    (tmp_path / "runs").write_text(content[:-5])
+    (tmp_path / "runs.part").write_text(content[:-5])
     again = Memory(tmp_path / "runs", "1", go_on=True, on_run=lambda: ran.append(0))
     assert again(JOBS) == [done(job) for job in JOBS]
     again.close()

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from functools import partial
 
-from model import simulate
+import pytest
+
+from model import Trajectory, load_config, simulate
 from model.analysis.figures import figures_by_name
-from model.analysis.ride import summary
+from model.analysis.ride import Summary
 from model.simulation.batch import in_order
+from model.simulation.simulate import simulate_motion
 from model.study.design import Range, Values, make_study
 from model.study.running import rows
 from tests.model.support import FLAT, PAPER, ROAD_SPRING
@@ -21,7 +24,7 @@ def test_rows_are_the_figures_of_single_runs_in_order():
     found = list(rows(study, keep=lambda run, trajectory: kept.update({run: trajectory})))
     for number, row in enumerate(found):
         single = simulate(SHORT.replace({"drive.speed_kmh": row.point[0]}))
-        named = figures_by_name(summary(single))
+        named = figures_by_name(Summary(single))
         assert (row.run, row.outcome.status) == (number, "complete")
         assert row.outcome.figures == tuple(named[name] for name in study.figures)
         assert kept[number].config == single.config
@@ -44,3 +47,12 @@ def test_values_that_do_not_go_together_are_a_row():
     assert found[0].outcome.complete
     assert found[1].outcome.status == "not allowed: road.height: must not be greater than the radius, 0.2 m"
     assert found[1].outcome.figures == (None, None)
+
+
+@pytest.mark.parametrize("preset", ["paper", "half_round", "m113"])
+def test_a_run_for_figures_alone_is_the_same_to_the_last_digit(preset):
+    config = load_config(preset).replace({"simulation.duration": 4, "drive.speed_kmh": 30})
+    motion, run = simulate_motion(config), simulate(config)
+    assert figures_by_name(Summary(motion)) == figures_by_name(Summary(run))
+    assert motion.a.shape == (len(motion.t), 1, 3)
+    assert not isinstance(motion, Trajectory)

@@ -1,0 +1,68 @@
+"""The tab "Study", the line under the sliders and the strips on them. assets/study.js draws them of data from here."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import viser
+
+from app.format.assets import asset
+from app.format.load_unit import KILONEWTON
+from app.format.markup import element, joined, running, style
+from app.format.parameters import file_number
+from app.panels.actions import Actions
+from app.panels.callbacks import by_user
+from app.panels.parameter_panel import ParameterPanel
+from app.plots.study_data import Data, FigureUnit
+from app.runs.study_choice import VARIABLE, VIEWS, StudyChoice, choice_from, figure_names
+from model.config.parameters import PARAMETER, PARAMETERS
+
+SAYS = "Study"  # label of the box by which the page tells something; nobody sees it
+
+
+class StudyPanel:
+    """Fills a container (a tab) of `gui`."""
+
+    def __init__(self, gui: viser.GuiApi, container: Any, controls: ParameterPanel, actions: Actions) -> None:
+        self._actions = actions
+        with container:
+            page = gui.add_html("")
+            says: Any = gui.add_text(SAYS, "")
+            self._data = {view: gui.add_html("") for view in VIEWS}
+        offer = {
+            "choice": StudyChoice().__dict__,
+            "figures": [FigureUnit(name, KILONEWTON).data for name in figure_names()],
+            "keys": [[p.key, p.label, p.group] for p in PARAMETERS if p.key in VARIABLE],
+        }
+        study = element(
+            "trackride-study",
+            data_says=says._impl.uuid,
+            data_sliders=json.dumps(controls.sliders),
+            data_offer=json.dumps(offer, ensure_ascii=False),
+        )
+        page.content = str(joined((running(asset("study.js")), style(asset("study.css")), study)))
+        controls.matters.content = str(element("trackride-matters"))
+        says.on_update(by_user(lambda event: self._take(event.target.value), actions.fail))
+
+    def show(self, kind: str, data: Data) -> None:
+        """Draw this; kind: one of VIEWS."""
+        self._data[kind].content = str(
+            element("trackride-study-data", of=kind, at=json.dumps(data, ensure_ascii=False, allow_nan=False))
+        )
+
+    def _take(self, text: str) -> None:
+        """What the page tells: a choice, or the value of a parameter, as shown."""
+        try:
+            told = json.loads(text)
+            kind, content = told["kind"], told["content"]
+        except (ValueError, KeyError, TypeError):
+            return  # a page that is being built, or anybody
+        if kind == "choice":
+            self._actions.choose_study(choice_from(json.dumps(content)))
+        elif kind == "record" and isinstance(content, dict):
+            self._actions.take_record(str(content.get("name"))[:80], str(content.get("text")))
+        elif kind == "set" and isinstance(content, dict):
+            for key, shown in content.items():
+                if key in VARIABLE and isinstance(shown, int | float):
+                    self._actions.steer(key, file_number(PARAMETER[key], shown))
