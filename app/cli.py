@@ -244,7 +244,7 @@ def _load_table(of: Summary) -> Table:
 
 
 def _figure_table(trajectory: Trajectory, of: Summary) -> Table:
-    from model.analysis.figures import AIR_TIME, FIGURES, WEIGHTED, figures_by_name
+    from model.analysis.figures import FIGURES, WEIGHTED, figures_by_name
     from model.analysis.signals import WHOLE
 
     table = Table(show_header=False, box=None, pad_edge=False)
@@ -252,8 +252,8 @@ def _figure_table(trajectory: Trajectory, of: Summary) -> Table:
     for figure in FIGURES:
         value = values[figure.name]
         words = f", {of.seat.reaction}" if figure is WEIGHTED and of.seat is not None else ""
-        worst = f", {'all road wheels' if figure is AIR_TIME else 'worst wheel'}" if figure.per_wheel else ""
-        table.add_row(figure.label + worst, "–" if value is None else f"{value:z.4g} {figure.unit}{words}")
+        worst = f", {'all road wheels' if figure.together else 'worst wheel'}" if figure.per_wheel else ""
+        table.add_row(figure.label + worst, "–" if value is None else f"{value:z.4g} {figure.unit}{words}".rstrip())
     table.add_row("Figures taken", f"{of.window.why}; {WHOLE}")
     work = trajectory.statistics
     for what, text in (

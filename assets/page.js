@@ -45,6 +45,10 @@ window.trackrideInTurn ??= (() => {
   };
 })();
 window.trackrideTell = tell;  // for plots.js
+let asks = 0;
+window.trackrideAsk = (kind, content) => trackrideInTurn(() => tell('asked', JSON.stringify({kind, content, count: ++asks})));
+// What its address asked for when it was opened (head.html) comes first
+if (window.trackrideOpened) trackrideAsk('link', trackrideOpened);
 // A tab whose page is loaded anew goes on where it was, whatever other tabs of this browser have stored since
 trackrideInTurn(() => tell('visit', sessionStorage.getItem('trackride') ?? 'null'));
 if (!document.body.dataset.trackride) {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 from app.runs.study_choice import StudyChoice
@@ -28,6 +28,15 @@ class Actions(Protocol):
 
     def reset(self) -> None:
         """Go back to the preset without any change."""
+
+    def reset_one(self, key: str) -> None:
+        """Give a parameter the value of the preset."""
+
+    def lead_to(self, key: str) -> None:
+        """Lead the user to the control of a parameter."""
+
+    def set_first(self, keys: Sequence[str]) -> None:
+        """Have these parameters among the first sliders, besides those that always are."""
 
     def undo(self) -> None: ...
 
@@ -56,6 +65,12 @@ class Actions(Protocol):
     def save_preset(self, name: str) -> None:
         """Make a preset of the configuration that is shown."""
 
+    def open_link(self, text: str) -> None:
+        """Show what the fragment of an address says (app/format/link.py)."""
+
+    def copy_link(self) -> None:
+        """Give the user an address that shows the same in anybody's explorer."""
+
     # Runs and baseline
 
     def pin(self) -> None:
@@ -78,6 +93,9 @@ class Actions(Protocol):
 
     def compare(self, number: int) -> None:
         """Make a kept run the baseline."""
+
+    def tick_run(self, number: int) -> None:
+        """Show a kept run beside the one that is shown, or do so no more."""
 
     def delete(self, number: int) -> None:
         """Keep a run no more."""
@@ -119,6 +137,9 @@ class Actions(Protocol):
 
     def pick_wheel(self, wheel: int | None) -> None:
         """Show a wheel's card; None, or the wheel that is picked already: no card."""
+
+    def open_tab(self, tab: str) -> None:
+        """Bring a tab of the plots to the front."""
 
     def set_dark(self, dark: bool) -> None:
         """Choose the look of the page."""

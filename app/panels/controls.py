@@ -34,8 +34,13 @@ def _decimals(value: float) -> int:
 class Control:
     """Slider or box of one parameter. A parameter for each wheel has two: for one value, and for a list."""
 
-    def __init__(self, gui: viser.GuiApi, parameter: Parameter, value: Any, actions: Actions) -> None:
+    def __init__(
+        self, gui: viser.GuiApi, parameter: Parameter, value: Any, actions: Actions, *, slider: bool | None = None
+    ) -> None:
+        """slider: a number has a slider; None: if it is one of the first sliders."""
         self.parameter = parameter
+        self._slider = (parameter.what_if if slider is None else slider) and parameter.kind in ("number", "integer")
+        self._slider &= not _typed(parameter)
         label, help_text = shown_label(parameter), hint(parameter)
         self._list: Any = None
         if _typed(parameter):
@@ -48,7 +53,7 @@ class Control:
             self._one = gui.add_checkbox(label, value, hint=help_text)
         else:
             first = shown_number(parameter, value[0] if isinstance(value, tuple) else value)
-            if parameter.what_if:
+            if self._slider:
                 self._reach = self._range(first)  # of the slider, before it is widened
                 low, high, step = self._reach
                 self._one = gui.add_slider(label, min(low, first), max(high, first), step, first, hint=help_text)
@@ -83,6 +88,17 @@ class Control:
         """viser's name of the slider or box for one value; on the page its label has it."""
         return self._one._impl.uuid
 
+    @property
+    def boxes(self) -> tuple[str, ...]:
+        """viser's names of the slider or box, and of the box for a list."""
+        return (self.box,) if self._list is None else (self.box, self._list._impl.uuid)
+
+    def remove(self) -> None:
+        """Take it away from the page."""
+        self._one.remove()
+        if self._list is not None:
+            self._list.remove()
+
     def show(self, value: Any) -> None:
         """Show this value, unless the control shows it already."""
         as_list = isinstance(value, tuple) and self._list is not None
@@ -106,7 +122,7 @@ class Control:
 
     def _fit(self, value: Any) -> None:
         """Give the slider its own range again, or that of vehicles like the one with this value, widened if need be."""
-        if not self.parameter.what_if or isinstance(value, tuple):
+        if not self._slider or isinstance(value, tuple):
             return
         shown = shown_number(self.parameter, value)
         if not self._reach[0] <= shown <= self._reach[1]:
@@ -121,7 +137,7 @@ class Control:
 
     def widen(self, value: Any) -> None:
         """Widen the range of the slider so that this value is in it."""
-        if self.parameter.what_if and not isinstance(value, tuple):
+        if self._slider and not isinstance(value, tuple):
             shown = shown_number(self.parameter, value)
             self._one.min, self._one.max = min(self._one.min, shown), max(self._one.max, shown)
 
@@ -135,7 +151,7 @@ class Control:
 
     def enable(self, applies: bool) -> None:
         """Let it be used, or show that it has no effect now: a slider turns grey, a box of a road disappears."""
-        if self.parameter.roads and not self.parameter.what_if:
+        if self.parameter.roads and not self._slider:
             self._one.visible = applies
         else:
             self._one.disabled = not applies

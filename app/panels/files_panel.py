@@ -27,6 +27,11 @@ class FilesPanel:
     ) -> None:
         fail = actions.fail
         with out:
+            link = gui.add_button(
+                "Copy link",
+                hint="An address that opens this vehicle, road, baseline and view in anybody's explorer",
+                icon=viser.Icon.LINK,
+            )
             self._size = gui.add_dropdown("Picture size", tuple(SIZES), hint="Of screenshots: pixels, width × height")
             self._transparent = gui.add_checkbox(
                 "Transparent", False, hint="Screenshots show vehicle and road without sky and ground"
@@ -69,6 +74,7 @@ class FilesPanel:
                 mime_type=".npz",
                 hint="An NPZ file, such as Data saves: it is compared with what is shown",
             )
+        link.on_click(by_user(lambda event: actions.copy_link(), fail))
         picture.on_click(by_user(lambda event: actions.export(PICTURE), fail))
         for group, buttons in ((figure, FIGURE_BUTTONS), (data, DATA_BUTTONS), (moving, MOTION_BUTTONS)):
             group.on_click(by_user(_exporting(actions, buttons), fail))

@@ -33,6 +33,7 @@ class PageSigns(NamedTuple):
     typed: viser.GuiTextHandle  # JSON: viser's name of a box for numbers, what was typed there and is none, a count
     size: viser.GuiTextHandle  # JSON: width and height of the page, and the view's width, px
     at: viser.GuiTextHandle  # JSON: a time in a plot that was clicked, s, and a count
+    asked: viser.GuiTextHandle  # JSON: kind, content and a count of what the page asks for (page_requests.py)
     layout: viser.GuiHtmlHandle  # see layout_html
     store: viser.GuiHtmlHandle  # what runs there stores something in the tab
     title: viser.GuiHtmlHandle  # see title_html
@@ -52,6 +53,7 @@ def add_page(gui: viser.GuiApi) -> PageSigns:
     typed = gui.add_text("Typed", "")
     size = gui.add_text("Size", "")
     at = gui.add_text("At", "")
+    asked = gui.add_text("Asked", "")
     layout = gui.add_html("")
     store = gui.add_html("")
     rules = style(
@@ -63,11 +65,12 @@ def add_page(gui: viser.GuiApi) -> PageSigns:
         data_typed=typed._impl.uuid,
         data_size=size._impl.uuid,
         data_at=at._impl.uuid,
+        data_asked=asked._impl.uuid,
         data_decimals=str(PRECISION),
     )
     intro = element("p", INTRO, class_="trackride-intro")
     page.content = str(joined((running(asset("page.js")), intro, rules)))
-    return PageSigns(in_view, in_front, night, visit, typed, size, at, layout, store, title)
+    return PageSigns(in_view, in_front, night, visit, typed, size, at, asked, layout, store, title)
 
 
 def store_visit(signs: PageSigns, state: str) -> None:

@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+import json
+from collections.abc import Collection, Iterable, Mapping
 from operator import attrgetter
 from typing import Any
 
 import viser
 
-from app.format.parameters import file_value
+from app.format.assets import asset
+from app.format.markup import element, joined, running, style
+from app.format.parameters import file_value, value_text
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.panels.controls import IMAGINARY, IMAGINARY_SWITCH, Control
 from app.panels.road_controls import PartsControl, ProfileControl
+from app.runs.request import Request
 from model.config.config import Config
-from model.config.parameters import GROUPS, NOTED, NOTES, PARAMETERS, ROAD, Parameter
+from model.config.parameters import GROUPS, NOTED, NOTES, PARAMETER, PARAMETERS, ROAD, Parameter
 
 SECTION_OF = {parameter.key: parameter.key.rpartition(".")[0] for parameter in PARAMETERS}
 SECTIONS = {name: attrgetter(name) for name in SECTION_OF.values() if name}
 BOXED = tuple(p for p in PARAMETERS if not p.what_if and p.group != NOTES and p.kind not in NOTED)  # in folders
+PINNABLE = frozenset(p.key for p in BOXED if p.kind in ("number", "integer", "choice", "flag", "list"))
+MOST_FIRST = 12  # parameters that the user can have among the first sliders
 KINDS: dict[str, Any] = {"points": ProfileControl, "parts": PartsControl}  # that have controls of their own
 
 
@@ -43,6 +49,12 @@ class ParameterPanel:
         for parameter in PARAMETERS:
             if parameter.what_if:
                 self._controls[parameter.key] = Control(gui, parameter, _value(config, parameter), actions)
+        self._first_place = gui.add_folder(None)
+        self._first: dict[str, Control] = {}  # that the user wants to have there, too
+        gui.add_html(str(joined((running(asset("parameters.js")), style(asset("parameters.css"))))))
+        self._rows, self._changes, self._sought = (gui.add_html("") for _ in range(3))
+        self._searches = 0
+        self._marked: Request | None = None  # whose changes are marked
         self.matters = gui.add_html("")  # for others to fill
         steps = gui.add_button_group(
             "Changes",
@@ -66,6 +78,55 @@ class ParameterPanel:
             with self._folders[parameter.group]:
                 self._controls[parameter.key] = control = make(self._gui, parameter, value, self._actions)
             _say(control, self._shown)
+        self._tell_rows()
+
+    def set_first(self, keys: Iterable[str]) -> None:
+        """Have these parameters, too, among the first sliders, and no others but those that always are."""
+        wanted = [key for key in dict.fromkeys(keys) if key in PINNABLE][:MOST_FIRST]
+        for key in self._first.keys() - set(wanted):
+            self._first.pop(key).remove()
+        for key in wanted:
+            if key not in self._first:
+                value = _value(self._shown, PARAMETER[key])
+                with self._first_place:
+                    control = Control(self._gui, PARAMETER[key], value, self._actions, slider=True)
+                self._first[key] = control
+                _say(control, self._shown)
+        self._tell_rows()
+
+    def mark(self, request: Request) -> None:
+        """Mark the parameters that this request, a valid one, changes in its preset."""
+        if request is self._marked:
+            return
+        self._marked = request
+        before, after = request.base, request.config()
+        old, new = before.values(), after.values()
+        was = {}
+        for key in self._controls:
+            parameter = after.parameter(key)
+            if parameter.applies_to(after.road.type):
+                usual = old.get(key) if parameter.applies_to(before.road.type) else parameter.default
+                if usual != new.get(key):
+                    was[key] = value_text(parameter, usual)
+        self._changes.content = str(element("trackride-changes", of=json.dumps(was, ensure_ascii=False)))
+
+    def lead_to(self, key: str) -> None:
+        """Open the folder of a parameter's control, and give it the keys."""
+        self._searches += 1
+        control = self._first.get(key) or self._controls[key]
+        listed = control.boxes and isinstance(_value(self._shown, control.parameter), tuple)
+        shown = control.boxes[-1] if listed else control.box
+        self._sought.content = str(element("trackride-sought", box=shown, count=str(self._searches)))
+
+    def _tell_rows(self) -> None:
+        """Say which box is which parameter's, and which of them the user may put among the first sliders."""
+        rows = {
+            box: [key, key in PINNABLE, key in self._first]
+            for controls in (self._controls, self._first)
+            for key, control in controls.items()
+            for box in control.boxes
+        }
+        self._rows.content = str(element("trackride-rows", of=json.dumps(rows)))
 
     def offer(self, presets: Mapping[str, Config], chosen: str) -> None:
         """Offer these presets, `chosen` as the one that is used."""
@@ -83,7 +144,8 @@ class ParameterPanel:
 
     def enter(self, box: str, text: str) -> None:
         """Take a text that was typed into a box for numbers, by viser's name of the box."""
-        control = next((control for control in self._controls.values() if control.box == box), None)
+        every = (*self._controls.values(), *self._first.values())
+        control = next((control for control in every if control.box == box), None)
         if control is None:
             self._actions.refuse_text(text)
         else:
@@ -107,7 +169,7 @@ class ParameterPanel:
         others = {name for name, section in SECTIONS.items() if section(before) == section(config)} if touched else ()
         if before.vehicle.imaginary_wheels.enabled != config.vehicle.imaginary_wheels.enabled:
             others = ()
-        for key, control in self._controls.items():
+        for key, control in (*self._controls.items(), *self._first.items()):
             if SECTION_OF[key] not in others:
                 _say(control, config, touched=key in touched)
 

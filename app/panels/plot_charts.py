@@ -14,7 +14,12 @@ from app.plots.curves import TIME, Curve, Plot
 
 FONT = "system-ui, sans-serif"
 LETTERS = 11  # px of usual type (page_layout.py), as the next four
-OPACITY = {"run": "", "baseline": "b0", "static": "c0"}  # of curves by kind, as the last byte of their colour
+OPACITY = {
+    "run": "",
+    "beside": "",
+    "baseline": "b0",
+    "static": "c0",
+}  # of curves by kind, as the last byte of their colour
 FADED = "38"
 WIDTH = 1  # px; the page makes 1.5 of it where a line is not pale (plots.js)
 DASH = {"baseline": (4, 3), "static": (1, 3)}

@@ -8,7 +8,7 @@ stretch of it it shows.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import monotonic
 from typing import Any
@@ -22,7 +22,7 @@ from app.panels.page_layout import PageLayout
 from app.panels.plot_charts import Charts
 from app.panels.plot_page import now_html, plot_page, tab_html, tools_html, window_html
 from app.panels.spectrum_panel import BELOW_CHART, SpectrumPanel
-from app.plots.curves import Plot, load_plots
+from app.plots.curves import Beside, Plot, load_plots
 from app.plots.ride import ride_plots
 from app.tabs.about import about_html
 from app.tabs.comfort import comfort_headline, comfort_page
@@ -59,6 +59,7 @@ class PlotPanel:
         self._client, self._layout, self._dark = client, layout, dark
         self._run: Trajectory | None = None
         self._baseline: Trajectory | None = None
+        self._beside: tuple[Beside, ...] = ()
         self._driving = False
         self._road: Road | None = None  # under the stretch of a drive that stands
         self._wheel: int | None = None
@@ -126,6 +127,11 @@ class PlotPanel:
             self._window.content = marked
         self.spectrum.offer_modes(not driving)
         self.point_at(time)
+
+    def show_beside(self, beside: tuple[Beside, ...]) -> None:
+        """Show curves of these runs, too."""
+        self._beside = beside
+        self._redraw()
 
     def settle(self) -> None:
         """Bring one part up to date, if it is time for that. To be called ten times a second."""
@@ -207,7 +213,7 @@ class PlotPanel:
     def _plot(
         self,
         run: Trajectory,
-        plots_of: Callable[[Trajectory, Palette, Trajectory | None, int | None], tuple[Plot, ...]],
+        plots_of: Callable[[Trajectory, Palette, Trajectory | None, int | None, Sequence[Beside]], tuple[Plot, ...]],
         charts: Charts,
         taken: float = 0.0,
     ) -> None:
@@ -217,7 +223,7 @@ class PlotPanel:
         """
         palette = wheel_palette(run.system.n, run.system.m, self._dark)
         wheel = self._wheel if self._wheel is not None and self._wheel < len(palette.wheels) else None
-        plots = plots_of(run, palette, self._baseline, wheel)
+        plots = plots_of(run, palette, self._baseline, wheel, self._beside)
         with self._client.atomic():
             charts.show(plots, self._layout.chart_height(len(plots), taken), self._layout.scale)
         self._client.flush()

@@ -24,6 +24,7 @@ class RoadControl:
 
     listed_value = None
     box = ""
+    boxes: tuple[str, ...] = ()
 
     def __init__(self, parameter: Parameter, value: Any) -> None:
         self.parameter, self.value = parameter, value

@@ -36,6 +36,7 @@ def add_shortcuts(gui: viser.GuiApi, actions: Actions) -> None:
         ("Pin this run as the baseline", "B", None, actions.pin),
         ("Follow the vehicle, or not", "F", None, partial(actions.toggle_switch, "follow")),
         ("Plots large, or beside the view", "L", None, actions.enlarge_plots),
+        ("Copy a link to what is shown", "C", "shift", actions.copy_link),
         ("Screenshot", "S", None, partial(actions.export, PICTURE)),
         *views,
     ):

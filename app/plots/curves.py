@@ -26,9 +26,18 @@ class Curve:
 
     label: str
     colour: str  # CSS
-    kind: Literal["run", "baseline", "static"] = "run"  # of this run, of its baseline, or at rest
+    kind: Literal["run", "baseline", "static", "beside"] = "run"  # of this run, its baseline, at rest, a run beside it
     wheel: int | None = None  # in the model's order; None: of the whole vehicle
     faded: bool = False  # another wheel is singled out
+
+
+@dataclass(frozen=True, eq=False)
+class Beside:
+    """A kept run that is shown beside the present one."""
+
+    name: str
+    colour: str  # CSS
+    run: Trajectory
 
 
 @dataclass(frozen=True)
@@ -64,19 +73,25 @@ class Plot:
 
 
 def load_plots(
-    run: Trajectory, palette: Palette, baseline: Trajectory | None = None, wheel: int | None = None
+    run: Trajectory,
+    palette: Palette,
+    baseline: Trajectory | None = None,
+    wheel: int | None = None,
+    beside: Sequence[Beside] = (),
 ) -> tuple[Plot, ...]:
     """Normal load of road wheels and of imaginary wheels, in the vehicle's unit, and the imaginary ones' share, %.
 
     A baseline adds its curves, one for each wheel that the run has too; a note says where it is of another size (see
     `beside_loads`). A wheel that is singled out leaves the others faded. A dotted line marks the load at rest: of that
     wheel, or the wheels' mean. A vehicle without imaginary wheels has no plots of theirs. Each wheel's largest load
-    during the motion is a peak of its curve.
+    during the motion is a peak of its curve. Of each run beside there is one curve: of the wheel that is singled
+    out, or of the largest load of the family.
     """
     n, m = run.system.n, run.system.m
     unit = load_unit(run.system)
-    beside = beside_loads(run, baseline)
-    note = "" if beside is baseline else "baseline: other size"
+    compared = beside_loads(run, baseline)
+    others = [other for other in beside if beside_loads(run, other.run) is not None]
+    note = "" if compared is baseline else "baseline: other size"
     families = [("Normal load of road wheels", wheel_curves("R", palette.road, 0, wheel), partial(_road_loads, unit))]
     if m:
         imaginary = wheel_curves("I", palette.imaginary, n, wheel)
@@ -89,7 +104,8 @@ def load_plots(
             curves,
             values,
             run,
-            beside,
+            compared,
+            others,
             at_rest=_at_rest(run, unit, curves, palette.hull),
             peaks=_load_peaks(unit, run, curves),
             note=note,
@@ -98,7 +114,7 @@ def load_plots(
     ]
     if m:
         share = [Curve("Share", palette.hull)]
-        plots += [time_plot("Load carried by imaginary wheels", "%", (0.0, 1.0), share, _share, run, baseline)]
+        plots += [time_plot("Load carried by imaginary wheels", "%", (0.0, 1.0), share, _share, run, baseline, beside)]
     return tuple(plots)
 
 
@@ -130,6 +146,7 @@ def time_plot(
     values: Callable[[Trajectory], np.ndarray],
     run: Trajectory,
     baseline: Trajectory | None = None,
+    beside: Sequence[Beside] = (),
     at_rest: tuple[float, Curve] | None = None,
     peaks: Sequence[tuple[float, float]] = (),
     note: str = "",
@@ -139,7 +156,7 @@ def time_plot(
     peaks: time and value of each curve's peak, in the curves' order; those outside of the run's samples are left out.
     """
     shown = values(run)
-    columns, finite = [shown], np.isfinite(shown)
+    columns, finite, own = [shown], np.isfinite(shown), curves
     if baseline is not None and len(baseline.t):
         others = values(baseline)[:, : len(curves)]
         curves = curves + [
@@ -147,6 +164,10 @@ def time_plot(
             for curve in curves[: others.shape[1]]
         ]
         columns += [at_times(run.t, baseline.t, others)]
+    for other in beside:
+        if len(other.run.t) and (single := _largest(values(other.run), own)) is not None:
+            curves = [*curves, Curve(other.name, other.colour, "beside")]
+            columns += [at_times(run.t, other.run.t, single)]
     time, thinned = run.t, np.hstack(columns) if len(columns) > 1 else shown
     if not finite.all():
         samples = finite.all(axis=1)
@@ -162,6 +183,14 @@ def time_plot(
         if len(time) and time[0] <= at <= time[-1]
     )
     return Plot(title, unit, tuple(curves), least, time, np.round(thinned, DECIMALS), peaks=marked, note=note)
+
+
+def _largest(values: np.ndarray, curves: Sequence[Curve]) -> np.ndarray | None:
+    """(N, 1) the curve that is singled out, or the largest of all; None where another vehicle has no such wheel."""
+    clear = [k for k, curve in enumerate(curves) if not curve.faded]
+    if len(clear) == 1 < len(curves):
+        return values[:, clear] if clear[0] < values.shape[1] else None
+    return values.max(axis=1, keepdims=True) if values.shape[1] else None
 
 
 def at_times(t: np.ndarray, own: np.ndarray, values: np.ndarray) -> np.ndarray:

@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from app.format.colours import Palette
-from app.plots.curves import Curve, Plot, time_plot, wheel_curves
+from app.plots.curves import Beside, Curve, Plot, time_plot, wheel_curves
 from model.analysis.ride import suspension_travel
 from model.simulation.trajectory import Trajectory
 
 
 def ride_plots(
-    run: Trajectory, palette: Palette, baseline: Trajectory | None = None, wheel: int | None = None
+    run: Trajectory,
+    palette: Palette,
+    baseline: Trajectory | None = None,
+    wheel: int | None = None,
+    beside: Sequence[Beside] = (),
 ) -> tuple[Plot, ...]:
     """Vertical acceleration of the hull, m/s², its pitch, °, its speed, km/h, and each road wheel's travel, mm.
 
-    Baseline and wheel as in `load_plots`.
+    Baseline, wheel and runs beside as in `load_plots`.
     """
     hull = [Curve("Hull", palette.hull)]
     road = wheel_curves("R", palette.road, 0, wheel if wheel is not None and wheel < run.system.n else None)
@@ -28,11 +34,12 @@ def ride_plots(
             _acceleration,
             run,
             baseline,
+            beside,
             peaks=_acceleration_peak(run),
         ),
-        time_plot("Pitch of the hull, nose up positive", "degrees", (-0.5, 0.5), hull, _pitch, run, baseline),
-        time_plot("Speed", "km/h", None, hull, _speed, run, baseline),
-        time_plot("Suspension travel, up positive", "mm", (-5.0, 5.0), road, _travel, run, baseline),
+        time_plot("Pitch of the hull, nose up positive", "degrees", (-0.5, 0.5), hull, _pitch, run, baseline, beside),
+        time_plot("Speed", "km/h", None, hull, _speed, run, baseline, beside),
+        time_plot("Suspension travel, up positive", "mm", (-5.0, 5.0), road, _travel, run, baseline, beside),
     )
 
 

@@ -32,6 +32,7 @@ class Changes:
     def __init__(self, first: Request) -> None:
         self._steps = [first]
         self._at = 0
+        self.count = 0  # how often `present` became another step
         self._noted = float("-inf")  # when, s
 
     @property
@@ -51,6 +52,7 @@ class Changes:
             self._steps[-1] = request
         else:
             self._steps.append(request)
+            self.count += 1
         del self._steps[: -STEPS - 1]
         self._at = len(self._steps) - 1
 
@@ -60,6 +62,7 @@ class Changes:
         if target == self._at:
             return None
         self._at, self._noted = target, float("-inf")
+        self.count += 1
         return self.present
 
 

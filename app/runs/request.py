@@ -35,6 +35,14 @@ class Request:
         changed = self.changed(key, value)
         return replace(changed, touched=changed.touched - {key})
 
+    def reset(self, key: str) -> Request:
+        """The same without a change to this parameter, nor to what goes with it."""
+        gone = {key} | _rivals(key)
+        if key == "road.type":
+            gone |= {parameter.key for parameter in PARAMETERS if parameter.roads}
+        changes = {other: given for other, given in self.changes.items() if other not in gone}
+        return replace(self, changes=changes, touched=self.touched - gone)
+
     def config(self) -> Config:
         """The configuration requested. Raises ConfigError."""
         return self.base.replace(dict(self.changes)) if self.changes else self.base

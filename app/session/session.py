@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from time import monotonic
@@ -24,6 +24,7 @@ from app.runs.request import Driven, Failed, Finished, Outcome, Refused, Request
 from app.runs.runner import Runner
 from app.runs.study_choice import StudyChoice
 from app.runs.turns import SHOWING
+from app.session.address import Address
 from app.session.error_log import Seldom, kind_of
 from app.session.studies import Studies
 from app.session.study_work import Record, Situation
@@ -89,6 +90,7 @@ class Session:
             self._runner.close()
             raise
         self._workspace = Workspace(self._window, self._runner, self._presets)
+        self._address = Address(self._window, self._workspace, presets)
         self._transfers = Transfers(client, self, self._window, self._workspace, run)
         self._record: Record | None = None  # measured, for studies
         self._studies = Studies(
@@ -125,6 +127,19 @@ class Session:
         self._runner.change(lambda request: Request(request.base))
         self._stir()
 
+    def reset_one(self, key: str) -> None:
+        self._runner.change(lambda request: request.reset(key))
+        self._stir()
+
+    def lead_to(self, key: str) -> None:
+        self.post("sought", lambda: self._window.lead_to(key))
+
+    def set_first(self, keys: Sequence[str]) -> None:
+        self.post("first", lambda: self._window.set_first(keys))
+
+    def open_tab(self, tab: str) -> None:
+        self.post("tab", lambda: self._window.open_tab(tab))
+
     def undo(self) -> None:
         with self._lock:
             self._steps -= 1
@@ -146,6 +161,12 @@ class Session:
     def save_preset(self, name: str) -> None:
         self.post("preset", lambda: self._workspace.save_preset(name))
 
+    def open_link(self, text: str) -> None:
+        self.post("link", lambda: self._address.open(text))
+
+    def copy_link(self) -> None:
+        self.post("copy", lambda: self._address.copy())
+
     def pin(self) -> None:
         self.post("baseline", lambda: self._workspace.pin())
 
@@ -163,6 +184,9 @@ class Session:
 
     def compare(self, number: int) -> None:
         self.post(f"run {number}", lambda: self._workspace.compare(number))
+
+    def tick_run(self, number: int) -> None:
+        self.post(f"tick {number}", lambda: self._workspace.tick_run(number))
 
     def delete(self, number: int) -> None:
         self.post(f"run {number}", lambda: self._workspace.delete(number))
@@ -218,7 +242,7 @@ class Session:
         self._stir()
 
     def set_view(self, view: str) -> None:
-        self.post("view", lambda: self._window.view.set_view(view))
+        self.post("view", lambda: self._window.set_view(view))
 
     def pick_wheel(self, wheel: int | None) -> None:
         self.post("wheel", lambda: self._window.pick_wheel(wheel))
@@ -455,6 +479,8 @@ class Session:
                 self._window.show_time(playback, driving)
                 self._window.show_status(self._runner.under_way())
         self._workspace.tick(now)
+        self._address.tick(now)
+        self._window.mark_changes(self._workspace.present)
         self._study(now, driving)
         missing, news = self._workspace.missing_run, self._workspace.news(now)
         if missing is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from time import monotonic
 from typing import Any, Protocol
 
@@ -12,15 +12,19 @@ import viser
 
 from app.format.colours import wheel_palette
 from app.format.load_unit import load_unit
-from app.format.parameters import refusal
+from app.format.markup import element
+from app.format.parameters import choice_words, refusal
 from app.panels.actions import Actions
+from app.panels.address_bar import AddressBar
 from app.panels.callbacks import by_user
 from app.panels.configuration_windows import YamlWindow, show_faults
 from app.panels.controls import PRECISION
 from app.panels.files_panel import FilesPanel
 from app.panels.notifications import Notifications
 from app.panels.page_layout import PageLayout, page_layout
+from app.panels.page_requests import carry_out
 from app.panels.page_setup import add_hints, add_page, apply_theme, layout_html, store_visit, title_html
+from app.panels.palette import add_palette
 from app.panels.parameter_panel import ParameterPanel
 from app.panels.playback_panel import PlaybackPanel, covered
 from app.panels.plot_panel import RUNS, STUDY, PlotPanel
@@ -30,16 +34,18 @@ from app.panels.status_line import BUSY_DELAY, drive_facts, progress_line, run_l
 from app.panels.study_panel import StudyPanel
 from app.panels.view_panel import ViewPanel
 from app.panels.wheel_card import WheelCard
+from app.plots.curves import Beside
 from app.runs.drive import DriveState
 from app.runs.playback import Playback
-from app.runs.request import Driven, Failed, Finished, Refused
+from app.runs.request import Driven, Failed, Finished, Refused, Request
 from app.tabs.road_profile import RoadAhead
 from app.view3d.mode_animation import PERIOD, ModeShow
 from model.analysis.ride import WheelState
 from model.config.config import Config, ConfigError
+from model.config.parameters import PARAMETER
 from model.config.validation import shorten
 from model.road.road import Road
-from model.simulation.trajectory import Trajectory
+from model.simulation.trajectory import Trajectory, wheel_names
 
 ROAD_EVERY = 0.35  # s between two side views of the road
 FOLDERS = "View", "Export", "Import and presets"
@@ -56,6 +62,8 @@ class VehicleView(Protocol):
     def draw(self, time: float) -> None: ...
 
     def show_ghost(self, trajectory: Trajectory | None) -> None: ...
+
+    def show_beside(self, runs: Sequence[tuple[Trajectory, str]]) -> None: ...
 
     @property
     def ghost_of_other_size(self) -> bool: ...
@@ -96,7 +104,7 @@ class Window:
         actions: Actions,
         make_view: Callable[[viser.ClientHandle, bool], VehicleView],
     ) -> None:
-        self._client, self._actions = client, actions
+        self._client, self._actions, self._presets = client, actions, presets
         self._dark = False  # until the browser tells its setting
         self._run: Trajectory | None = None
         self._baseline: Trajectory | None = None
@@ -108,6 +116,8 @@ class Window:
         self._mode: ModeShow | None = None  # shown in the place of the run
         self._ghost_hidden = False  # the baseline's vehicle is of another size
         self._run_number = 0
+        self._standpoint = ""  # from which the user last chose to look
+        self._to_look: tuple[Config, str, str] | None = None  # standpoint and wheel for when this vehicle is shown
         self._road_due = 0.0  # monotonic s
         self._road_ahead = RoadAhead()
         self._notifications = Notifications(client)
@@ -134,6 +144,9 @@ class Window:
             signs.at.on_update(
                 by_user(lambda event: actions.scrub(float(json.loads(event.target.value)[0])), actions.fail)
             )
+            signs.asked.on_update(by_user(lambda event: carry_out(event.target.value, actions), actions.fail))
+            self.address = AddressBar(gui)
+            self._opened, self._tabs_opened = gui.add_html(""), 0
             self._controls = ParameterPanel(gui, presets, preset, config, actions)
             with self._controls.middle:
                 self._folders = [gui.add_folder(name, expand_by_default=False) for name in FOLDERS]
@@ -157,6 +170,7 @@ class Window:
             self._view_panel = ViewPanel(gui, view, self._dark, actions)
             self.files = FilesPanel(gui, out, into, actions)
             add_shortcuts(gui, actions)
+            add_palette(gui, self._presets, actions)
             add_hints(gui)
         self._filled = True
 
@@ -216,6 +230,12 @@ class Window:
             self._plot(self._plots.time)
         self.view.show_ghost(baseline)
         self._mind_the_ghost()
+
+    def show_beside(self, beside: tuple[Beside, ...]) -> None:
+        """Show these runs, too, from now on: their curves, and their vehicles as ghosts."""
+        self._end_mode()
+        self._plots.show_beside(beside)
+        self.view.show_beside([(other.run, other.colour) for other in beside])
 
     def _mind_the_ghost(self) -> None:
         """Say once why the baseline's vehicle is not seen."""
@@ -324,6 +344,7 @@ class Window:
         if self._drive is None or self._drive.stands:
             self._plots.point_at(playback.time)
         self._plots.settle()
+        self._look_as_asked()
         self.view.write_names()
         self._show_wheel()
         self._show_road(playback.time)
@@ -348,7 +369,60 @@ class Window:
         if self._controls.road_view.content != view:
             self._controls.road_view.content = view
 
+    # ── Parameters ──
+
+    def mark_changes(self, request: Request) -> None:
+        """Mark the parameters that a request changes in its preset."""
+        if self._filled:
+            self._controls.mark(request)
+
+    def lead_to(self, key: str) -> None:
+        """Lead the user to the control of a parameter."""
+        parameter = PARAMETER[key]
+        if self._run is not None and not parameter.applies_to(self._run.config.road.type):
+            roads = " or ".join(map(choice_words, parameter.roads))
+            self.say("Not on this road", f"{parameter.label} belongs to another road. Choose Road type: {roads}.")
+        elif self._filled:
+            self._controls.lead_to(key)
+
+    def set_first(self, keys: Sequence[str]) -> None:
+        """Have these parameters among the first sliders, besides those that always are."""
+        self._controls.set_first(keys)
+
+    def open_tab(self, tab: str) -> None:
+        """Bring a tab of the plots to the front."""
+        self._tabs_opened += 1
+        self._opened.content = str(element("trackride-front", of=tab, count=str(self._tabs_opened)))
+
     # ── Looks ──
+
+    @property
+    def looks(self) -> tuple[str, str]:
+        """Standpoint, and name of the wheel whose card is shown; empty where the user has chosen none."""
+        wheel = self._card.wheel
+        return self._standpoint, "" if wheel is None or self._run is None else wheel_names(self._run.system)[wheel]
+
+    def look(self, config: Config, view: str, wheel: str) -> None:
+        """Once this vehicle is shown, look from a standpoint and show the card of a wheel; both may be empty."""
+        self._to_look = config, view, wheel
+
+    def _look_as_asked(self) -> None:
+        if self._to_look is None or self._run is None or self._to_view is not None:
+            return
+        config, view, wheel = self._to_look
+        if config != self._run.config:
+            return
+        self._to_look = None
+        names = wheel_names(self._run.system)
+        if view:
+            self.set_view(view)
+        if wheel in names and names.index(wheel) != self._card.wheel:
+            self.pick_wheel(names.index(wheel))
+
+    def set_view(self, view: str) -> None:
+        """Look at the vehicle from a standpoint."""
+        self._standpoint = view
+        self.view.set_view(view)
 
     def set_in_front(self, tabs: frozenset[str]) -> None:
         """Take note of the tabs of the plots that are seen; from this we also know that the page is laid out."""

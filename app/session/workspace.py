@@ -9,7 +9,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from app.runs.history import REST, Changes, Kept, Runs, run_name
+from app.format.link import Link
+from app.plots.curves import Beside
+from app.runs.history import REST, RUN_COLOURS, Changes, Kept, Runs, run_name
 from app.runs.request import Finished, Request, first_request, same
 from app.runs.runner import Runner
 from app.runs.storage import PRESETS, State, state_text
@@ -18,6 +20,7 @@ from model.config.config import Config, ConfigError
 from model.simulation.trajectory import Trajectory
 
 COMPARE_EVERY = 0.3  # s from one table of figures to the next while runs follow each other and the table is seen…
+BESIDE = 8  # kept runs at most that are shown beside the present one
 CALM = 0.3  # s … or without another run when it is not
 
 
@@ -39,6 +42,7 @@ class Workspace:
         self._kept: Kept | None = None  # the same, once it is kept
         self._before_drive = ""  # name of the run whose figures stay while a drive is shown
         self._baseline: Kept | None = None
+        self._ticked: list[int] = []  # numbers of the kept runs that are shown beside
         self._compared = self._named = True  # the table of figures and the name belong to the run that is shown
         self._compared_at = 0.0  # when it was made, s
         self._news_at: float | None = (
@@ -47,6 +51,7 @@ class Workspace:
         self._stored = ""
         self._dark: bool | None = None  # the look that the user has chosen
         self._prefers_dark = False
+        self._link: Link | None = None  # to be opened once the browser has told what it has stored
         self._restored = False  # the browser has told what it has stored; from then on we may overwrite it
 
     @property
@@ -58,6 +63,21 @@ class Workspace:
     def baseline(self) -> Trajectory | None:
         """The run that others are compared with."""
         return None if self._baseline is None else self._baseline.run
+
+    @property
+    def present(self) -> Request:
+        """What undo and redo have led to: the newest request that came true."""
+        return self._changes.present
+
+    @property
+    def steps(self) -> tuple[int, Config | None]:
+        """Another one at each step that the user takes: of undo, or to another baseline."""
+        return self._changes.count, _config_of(self._baseline)
+
+    @property
+    def stands(self) -> bool:
+        """Whether the browser has told what it has stored, and nothing that was requested is still to come."""
+        return self._restored and same(self._runner.latest, self.present)
 
     # ── What happens ──
 
@@ -108,8 +128,9 @@ class Workspace:
 
     @property
     def missing_run(self) -> Config | None:
-        """The configuration of the baseline, if its run has to be made again (see `made_again`); else None."""
-        return None if self._baseline is None or self._baseline.run is not None else self._baseline.config
+        """The configuration of the baseline or a ticked run that has to be made again (see `made_again`); else None."""
+        wanted = [*([] if self._baseline is None else [self._baseline]), *self._beside]
+        return next((kept.config for kept in wanted if kept.run is None), None)
 
     def news(self, now: float) -> str | None:
         """The text that the browser is to store, given once, when the user has rested; None: nothing new. `now`, s."""
@@ -180,9 +201,33 @@ class Workspace:
         if number in self._runs:
             self._set_baseline(self._runs[number])
 
+    def tick_run(self, number: int) -> None:
+        """Show a kept run beside the one that is shown, or do so no more."""
+        if number in self._ticked:
+            self._ticked.remove(number)
+        elif len(self._ticked) >= BESIDE:
+            self._window.say("Eight at most", f"{BESIDE} runs are shown beside this one. Take one away first.")
+        elif number in self._runs:
+            self._ticked.append(number)
+        self._show_beside()
+        self._show()
+
+    @property
+    def _beside(self) -> list[Kept]:
+        return [self._runs[number] for number in self._ticked if number in self._runs]
+
+    def _show_beside(self) -> None:
+        """Show those that are there; those of which only the configuration is left follow when they are made again."""
+        self._ticked = [kept.number for kept in self._beside]
+        shown = [Beside(kept.name, kept.colour, kept.run) for kept in self._beside if kept.run is not None]
+        self._window.show_beside(tuple(shown))
+        self._compared, self._compared_at = False, 0.0
+
     def delete(self, number: int) -> None:
         """Keep a run no more. If it is the baseline, it stays the baseline."""
         self._runs.delete(number)
+        if number in self._ticked:
+            self._show_beside()
         if self._kept is not None and self._kept.number == number:
             self._kept, self._rested = None, True  # so that it is not kept again at once
         self._note_news()
@@ -208,10 +253,15 @@ class Workspace:
         elif self._baseline is not None and self._baseline.config == config:
             self._window.say("No baseline", f"{self._baseline.name} cannot be run again.")
             self.clear_baseline()
+        else:
+            self._ticked = [kept.number for kept in self._beside if kept.config != config]
 
     def _complete(self, run: Trajectory) -> None:
         """Give the run to the kept run, and to the baseline, of which only the configuration was left."""
+        again = any(kept.run is None and kept.config == run.config for kept in self._beside)
         self._runs.complete(run)
+        if again:
+            self._show_beside()
         baseline = self._baseline
         if baseline is not None and baseline.run is None and baseline.config == run.config:
             self._set_baseline(replace(baseline, run=run))
@@ -240,7 +290,7 @@ class Workspace:
         return "" if self._good is None else run_name(self._good.request.base, self._good.trajectory.config)
 
     def _show(self) -> None:
-        self._window.runs.show(self._runs, self._name, self._kept, self._baseline, self._before_drive)
+        self._window.runs.show(self._runs, self._name, self._kept, self._baseline, self._before_drive, self._ticked)
 
     def _tell(self, now: float) -> None:
         """Show name and figures of the run, unless they are shown already."""
@@ -250,7 +300,8 @@ class Workspace:
             self._show()
             self._window.runs.show_name(self._name)
         if not self._compared:
-            self._window.runs.compare(self._good.trajectory, self.baseline)
+            beside = [Beside(kept.name, kept.colour, kept.run) for kept in self._beside if kept.run is not None]
+            self._window.runs.compare(self._good.trajectory, self.baseline, beside)
             self._compared, self._compared_at = True, now
 
     # ── Configurations ──
@@ -259,6 +310,21 @@ class Workspace:
         """Request a configuration from outside; as changes to the present preset if both have the same name."""
         base = self._runner.latest.base
         self._request(first_request(base, config) if config.name == base.name else Request(config))
+
+    def open(self, link: Link) -> None:
+        """Request configuration and baseline of a link, once the browser has told what it has stored."""
+        if not self._restored:
+            self._link = link
+            return
+        if _config_of(self._baseline) != link.baseline:
+            self._set_baseline(
+                None if link.baseline is None else self._linked_baseline(link.baseline_preset, link.baseline)
+            )
+        if not _asks_for(self._runner.latest, link.config):
+            self._request(first_request(self._presets[link.preset], link.config))
+
+    def _linked_baseline(self, preset: str, config: Config) -> Kept:
+        return self._runs.find(config) or _to_be_run(first_request(self._presets[preset], config))
 
     def change_road(self, changes_of: Callable[[Config], dict[str, Any]]) -> None:
         """Request changes (dotted key -> value) to the road of the latest request, if that request is valid."""
@@ -315,15 +381,23 @@ class Workspace:
     def restore(self, state: State | None) -> None:
         """Go on where this browser was at its last visit; None: the browser told nothing.
 
-        Look, presets and runs are there again in any case; parameters and baseline unless the explorer was started with
-        something else, or the user is at work already.
+        Look, presets and runs are there again in any case; parameters and baseline unless a link says others, the
+        explorer was started with something else, or the user is at work already.
         """
         self._restored = True
         if state is not None and self._dark is None:
             self._dark = state.dark
         self._look()
-        if state is None:
-            return
+        if state is not None:
+            self._take_stock(state)
+        link, self._link = self._link, None
+        if link is not None and (state is None or not _was_shown(link, state)):
+            self.open(link)
+        elif state is not None:
+            self._go_on(state)
+
+    def _take_stock(self, state: State) -> None:
+        """Have presets and runs again."""
         for preset in state.presets:
             if preset not in self._presets.values():
                 self._offer(preset)
@@ -331,6 +405,9 @@ class Workspace:
         for kept in state.runs:
             self._runs.take_back(kept)
         self._show()
+
+    def _go_on(self, state: State) -> None:
+        """Have parameters and baseline again."""
         latest = self._runner.latest
         if state.start != self._started_with or latest.number != self._start.number:
             return
@@ -339,3 +416,27 @@ class Workspace:
         if state.request is not None and not same(state.request, latest):
             self._request(state.request)
             self._window.say("Welcome back", "All parameters are as you left them. Undo leads back to the start.")
+
+
+def _config_of(kept: Kept | None) -> Config | None:
+    return None if kept is None else kept.config
+
+
+def _was_shown(link: Link, state: State) -> bool:
+    """Whether a link says what the browser was shown last."""
+    shown = None if state.request is None else state.request.config()
+    return (shown, _config_of(state.baseline)) == (link.config, link.baseline)
+
+
+def _asks_for(request: Request, config: Config) -> bool:
+    """Whether a request, which may be no valid one, is for this configuration."""
+    try:
+        return request.config() == config
+    except ConfigError:
+        return False
+
+
+def _to_be_run(request: Request) -> Kept:
+    """A run that is not made yet, for a baseline."""
+    config = request.config()
+    return Kept(0, request, config, None, run_name(request.base, config), RUN_COLOURS[1], named=False)

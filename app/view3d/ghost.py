@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import viser
 
-from app.format.colours import Theme
+from app.format.colours import Theme, rgb
 from app.view3d.meshes.hull import hull_edges
 from app.view3d.nodes import paint, update
 from app.view3d.snapshot import SIDES, Scene
@@ -62,11 +62,12 @@ class Outline:
 class Ghost:
     """The vehicle of one run in a viser scene."""
 
-    def __init__(self, api: viser.SceneApi, scene: Scene, theme: Theme) -> None:
-        self.scene = scene
+    def __init__(self, api: viser.SceneApi, scene: Scene, theme: Theme, name: str = GHOST, colour: str = "") -> None:
+        """name: of its node; colour: CSS, of its own; empty: the theme's."""
+        self.scene, self._colour = scene, colour
         self._outline = Outline(scene)
         self._lines = api.add_line_segments(
-            GHOST,
+            name,
             self._outline.segments(scene.bodies(0.0), 0.0),
             (0, 0, 0),
             thickness=THICKNESS * scene.measures.scale,
@@ -78,7 +79,7 @@ class Ghost:
         self.scene = scene
 
     def colour(self, theme: Theme) -> None:
-        paint(self._lines, theme.ghost)
+        paint(self._lines, rgb(self._colour) if self._colour else theme.ghost)
 
     def draw(self, time: float, x: float) -> None:
         """Stand at a time, s, with the hull's centre of mass at x in the view, m."""

@@ -6,13 +6,13 @@ touched, and the user's own orbit and zoom stay. Frame of the view: x forward, y
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from app.format.colours import DARK, LIGHT, Theme, wheel_palette
 from app.format.load_unit import load_unit
 from app.view3d.camera import Camera, Standpoint, Tab, about_as_long
-from app.view3d.ghost import Ghost
+from app.view3d.ghost import GHOST, Ghost
 from app.view3d.labels import WheelLabels
 from app.view3d.nodes import RoadNodes, Surroundings, VehicleNodes
 from app.view3d.overlays import SWITCHES, Overlays
@@ -44,6 +44,7 @@ class View3D:
         self._scene: Scene | None = None
         self._nodes: _Nodes | None = None
         self._ghost: Ghost | None = None
+        self._beside: list[Ghost] = []  # of runs beside the baseline
         self._picked: Callable[[int], None] = lambda wheel: None
         self._height, self._type = 900, 1.0  # px of the picture, and type by its usual size
         self._marked: int | None = None  # wheel that is picked
@@ -88,6 +89,20 @@ class View3D:
                 self._replace_ghost(scene)
             self.draw(self._time)
 
+    def show_beside(self, runs: Sequence[tuple[Trajectory, str]]) -> None:
+        """Show the vehicles of these runs, too, each as an outline of its colour (CSS). None may be much larger or
+        smaller than the vehicle that is shown; a run without samples is left out."""
+        with self._client.atomic():
+            for ghost in self._beside:
+                ghost.remove()
+            self._beside = [
+                Ghost(self._client.scene, build_scene(run), self._theme, f"{GHOST}/{k}", colour)
+                for k, (run, colour) in enumerate(runs)
+                if len(run.t)
+            ]
+            self._show_or_hide_ghost()
+            self.draw(self._time)
+
     @property
     def ghost_of_other_size(self) -> bool:
         """Whether there is a ghost that is not shown since it is much larger or smaller than the vehicle."""
@@ -108,8 +123,9 @@ class View3D:
             nodes.road.draw(scene, now)
             nodes.labels.move(now.x - now.origin, scene.lowest)
             nodes.overlays.draw(scene, now)
-            if self._ghost is not None and not self._live:
-                self._ghost.draw(time, now.x - now.origin)
+            if not self._live:
+                for ghost in self._ghosts:
+                    ghost.draw(time, now.x - now.origin)
             self._surroundings.draw(scene, now)
 
     def set_view(self, standpoint: Standpoint) -> None:
@@ -123,8 +139,8 @@ class View3D:
         self._dark = dark
         with self._client.atomic():
             self._surroundings.colour(self._theme)
-            if self._ghost is not None:
-                self._ghost.colour(self._theme)
+            for ghost in self._ghosts:
+                ghost.colour(self._theme)
             self._colour_nodes()
 
     def on_pick(self, act: Callable[[int], None]) -> None:
@@ -190,6 +206,10 @@ class View3D:
     def _theme(self) -> Theme:
         return DARK if self._dark else LIGHT
 
+    @property
+    def _ghosts(self) -> list[Ghost]:
+        return [*([] if self._ghost is None else [self._ghost]), *self._beside]
+
     def _replace_ghost(self, scene: Scene | None) -> None:
         if self._ghost is not None:
             self._ghost.remove()
@@ -199,6 +219,10 @@ class View3D:
     def _show_or_hide_ghost(self) -> None:
         if self._ghost is not None:
             self._ghost.show(not self._live and not self.ghost_of_other_size)
+        for ghost in self._beside:
+            ghost.show(
+                not self._live and self._scene is not None and about_as_long(ghost.scene.measures, self._scene.measures)
+            )
 
     def _show_what_is_on(self) -> None:
         if self._nodes is not None:

@@ -5,8 +5,8 @@ To add a figure, add a line to FIGURES.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from math import isfinite
 from typing import Literal
 
@@ -33,8 +33,14 @@ class Figure:
     road_wheels_only: bool = False  # where it is per wheel
     better: Literal["smaller", "larger"] | None = "smaller"  # None: neither, as such
     least: float = 1e-3  # in the unit: a baseline smaller than this is as good as nothing
+    share: float = 0.005  # of the figure: a finer difference is not resolved, …
+    resolution: float | Literal["sample"] = 0.0  # … nor one finer than this, in the unit, or than the sampling
+    together: bool = False  # of all wheels counts what the road wheels come to together; else the worst wheel
     grows: Literal["window", "run"] | None = None  # with what it grows
     compared: bool = True  # among the figures of the ride; else it tells about the computation
+
+
+PEAK_SHARE = 0.01  # what is largest for an instant: against a fine solution, loads come within 0.62 % (README)
 
 
 def _felt(value: Callable[[Comfort], float]) -> Callable[[Summary], float | None]:
@@ -55,6 +61,7 @@ ACCELERATION_PEAK = Figure(
     "m/s²",
     "of the hull's centre of mass, the largest in either direction in the whole run",
     lambda of: of.acceleration_peak,
+    share=PEAK_SHARE,
 )
 SHOCK = Figure(
     "shock",
@@ -63,6 +70,7 @@ SHOCK = Figure(
     "largest vertical acceleration at the driver's seat in either direction over the window, behind a low-pass of "
     "30 Hz (Butterworth, 2nd order); 2.5 g is held to be the limit",
     _felt(lambda felt: felt.shock),
+    share=PEAK_SHARE,
 )
 WEIGHTED = Figure(
     "weighted_acceleration",
@@ -110,7 +118,13 @@ IMAGINARY_SHARE = Figure(
     least=1e-2,
 )
 LOAD_PEAK = Figure(
-    "peak_load", "Peak load", "kN", "largest normal load in the whole run", lambda of: of.load_max / 1e3, per_wheel=True
+    "peak_load",
+    "Peak load",
+    "kN",
+    "largest normal load in the whole run",
+    lambda of: of.load_max / 1e3,
+    per_wheel=True,
+    share=PEAK_SHARE,
 )
 LOAD_RMS = Figure(
     "rms_load", "Load, rms", "kN", "of the normal load, over the window", lambda of: of.load_rms / 1e3, per_wheel=True
@@ -143,6 +157,21 @@ AIR_TIME = Figure(
     lambda of: of.air_time,
     per_wheel=True,
     least=1e-9,
+    resolution="sample",
+    together=True,
+    grows="run",
+)
+LIFT_OFFS = Figure(
+    "lift_offs",
+    "Lift-offs",
+    "",
+    "how often a wheel left the ground in the whole run, counted from sample to sample: a hop between two is not seen",
+    lambda of: of.lift_offs.astype(float),
+    per_wheel=True,
+    least=0.5,
+    share=0.0,
+    resolution=1.0,
+    together=True,
     grows="run",
 )
 DRIFT = Figure(
@@ -158,10 +187,11 @@ ENERGY_ERROR = Figure(
 )
 FIGURES = (
     ACCELERATION_RMS, ACCELERATION_PEAK, SHOCK, WEIGHTED, DOSE, TRANSIENT, POWER, PITCH, IMAGINARY_SHARE,
-    LOAD_PEAK, LOAD_RMS, LOAD_COEFFICIENT, TRAVEL, AIR_TIME, DRIFT,
-    ENERGY_ERROR,
+    LOAD_PEAK, LOAD_RMS, LOAD_COEFFICIENT, TRAVEL, AIR_TIME, LIFT_OFFS,
+    DRIFT, ENERGY_ERROR,
 )  # fmt: skip
 FIGURE = {figure.name: figure for figure in FIGURES}
+LABELLED = {figure.label: figure for figure in FIGURES}
 RIDE_FIGURES = tuple(figure for figure in FIGURES if figure.compared)
 HULL_FIGURES = tuple(figure for figure in RIDE_FIGURES if not figure.per_wheel)
 WHEEL_FIGURES = tuple(figure for figure in RIDE_FIGURES if figure.per_wheel)
@@ -177,17 +207,28 @@ class Row:
     now: float | None
     baseline: float | None
     change: float | None  # %, of the baseline; None where it means nothing
-    resolution: float = 0.0  # in the unit: finer differences mean nothing
+    resolution: float = 0.0  # in the unit: a figure is told no finer than this, …
+    share: float = 0.005  # … and differs only by more than this share of it (see Figure)
 
     @property
     def label(self) -> str:
         return f"{self.figure}, {self.wheel}" if self.wheel else self.figure
 
+    @property
+    def resolved(self) -> bool:
+        """Whether now and baseline differ by what the figure resolves, or more; False without both."""
+        if self.now is None or self.baseline is None:
+            return False
+        share = self.share * max(abs(self.now), abs(self.baseline))
+        difference = abs(self.now - self.baseline)
+        return difference > 0 and difference >= max(share, self.resolution)
+
 
 def figure_named(name: str, of: Summary) -> float | None:
     """A figure by its name: of each wheel "peak_load.R1", and as "peak_load" the worst wheel's.
 
-    The worst time in the air is that of all road wheels together. None: it cannot be told, or there is no such wheel.
+    Of time in the air and lift-offs the worst is what all road wheels come to together. None: it cannot be told, or
+    there is no such wheel.
     """
     name, _, wheel = name.partition(".")
     figure = FIGURE[name]
@@ -213,11 +254,33 @@ def figures_by_name(of: Summary) -> dict[str, float | None]:
     return named | worst
 
 
+@dataclass(frozen=True)
+class Overall:
+    """A figure of each wheel for all of them."""
+
+    row: Row  # of the worst wheel now, which it names; of what the road wheels come to together, where it names none
+    baseline_wheel: str  # the worst in the baseline, which may be another
+
+
+def overall(rows: Sequence[Row]) -> list[Overall]:
+    """The rows of figures of each wheel (see `comparison`), one for each figure."""
+    found = []
+    for label in dict.fromkeys(row.figure for row in rows if row.wheel):
+        mine, figure = [row for row in rows if row.figure == label and row.wheel], LABELLED[label]
+        now, wheel = _overall(figure, {row.wheel: row.now for row in mine})
+        baseline, before = _overall(figure, {row.wheel: row.baseline for row in mine})
+        compared = any(row.baseline is not None for row in mine)
+        reference = baseline if compared else None
+        comparable = any(row.change is not None for row in mine)  # the runs are as long, where that matters
+        change = percent(now, reference, figure.least) if comparable else None
+        found.append(Overall(replace(mine[0], wheel=wheel, now=now, baseline=reference, change=change), before))
+    return found
+
+
 def comparison(now: Trajectory, baseline: Trajectory | None) -> list[Row]:
     """The ride figures of a run, and of another beside them: the hull's first, then each wheel's, front first.
 
-    A figure that grows with time changes in percent only where both have had the same time. The time in the air is
-    counted in samples.
+    A figure that grows with time changes in percent only where both have had the same time.
     """
     runs = [now] if baseline is None else [now, baseline]
     sampling = max(1 / run.config.simulation.output_rate for run in runs)
@@ -230,8 +293,8 @@ def comparison(now: Trajectory, baseline: Trajectory | None) -> list[Row]:
         change = None
         if same_time(figure.grows, *summaries):
             change = percent(value, reference, figure.least)
-        resolution = sampling if figure is AIR_TIME else 0.0
-        rows.append(Row(figure.label, wheel, figure.unit, value, reference, change, resolution))
+        resolution = sampling if figure.resolution == "sample" else figure.resolution
+        rows.append(Row(figure.label, wheel, figure.unit, value, reference, change, resolution, figure.share))
     return rows
 
 
@@ -283,6 +346,13 @@ def _of_wheels(of: Summary, reading: np.ndarray) -> dict[str, float]:
 
 def _worst(figure: Figure, wheels: Mapping[str, float]) -> float | None:
     """Of all wheels; None where it can be told of none."""
-    if figure is AIR_TIME:
+    if figure.together:
         return float(np.sum([value for wheel, value in wheels.items() if wheel.startswith("R")]))
     return max(wheels.values(), default=None)
+
+
+def _overall(figure: Figure, values: Mapping[str, float | None]) -> tuple[float | None, str]:
+    """Of all wheels, and the worst of them where it is that wheel's."""
+    told = {wheel: value for wheel, value in values.items() if value is not None}
+    worst = "" if figure.together else max(told, key=lambda wheel: told[wheel], default="")
+    return _worst(figure, told), worst

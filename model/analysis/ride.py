@@ -102,6 +102,11 @@ class Summary:
         """(W,) s without load."""
         return air_time(self._run)
 
+    @property
+    def lift_offs(self) -> np.ndarray:
+        """(W,) how often a wheel lost its load."""
+        return lift_offs(self._load)
+
     @cached_property
     def _travel(self) -> np.ndarray:
         return suspension_travel(self._run)
@@ -207,6 +212,11 @@ def peak_load(motion: Motion) -> np.ndarray:
 def air_time(motion: Motion) -> np.ndarray:
     """(W,) s for which each wheel has no load."""
     return motion.peaks.air_time
+
+
+def lift_offs(load: np.ndarray) -> np.ndarray:
+    """(W,) how often each wheel's load (N, W) was gone at a sample after it was there at the one before."""
+    return np.count_nonzero((load[1:] <= 0) & (load[:-1] > 0), axis=0)
 
 
 def peak_acceleration(motion: Motion) -> float:

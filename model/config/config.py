@@ -511,7 +511,16 @@ def _parsed(text: str) -> Any:
     except yaml.MarkedYAMLError as error:
         mark, problem = error.problem_mark, " ".join((error.problem or "not YAML").split())
         where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
-        raise _text_error(where + _CLEARER.get(problem, problem)) from None
+        raise _text_error(where + _CLEARER.get(problem, problem) + _lines(text, mark, error.context_mark)) from None
+
+
+def _lines(text: str, mark: yaml.Mark | None, context: yaml.Mark | None) -> str:
+    """The line at which a fault was found, and the one where what is faulty began, if that is another."""
+    lines = text.splitlines()
+    if len(lines) < 2:
+        return ""
+    shown = {place.line: lines[place.line].strip() for place in (mark, context) if place and place.line < len(lines)}
+    return "".join(f"; line {number + 1} is {shorten(line)}" for number, line in shown.items() if line)
 
 
 # What PyYAML says, and what a reader can do about it

@@ -81,8 +81,8 @@ class Parameter:
 
     def slider(self, value: float) -> tuple[float, float, float]:
         """Ends and step of a slider for vehicles like the one with this value: a robot's are a tenth or less."""
-        scale = 1.0
-        while 0.0 < value < scale * self.slider_low:
+        scale, least = 1.0, self.slider_low or self.slider_high / 100
+        while 0.0 < value < scale * least:
             scale /= 10
         return max(scale * self.slider_low, self.low), scale * self.slider_high, scale * self.step
 
@@ -218,6 +218,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "less, depending on the waves."),
     Parameter("vehicle.road_suspension.damping", "Suspension damping", "c_s", "N s/m", 4732.0, 0, 1e7, 0, 30000, 100,
         group=SUSPENSION, source=PAPER_TABLE, shown=KILO_N_S_PER_M, per_wheel=True,
+        what_if=True,
         description="Damping between hull and each road arm, at the wheel.",
         growth="Bounce and pitch die away sooner, but sharp obstacles hit the hull harder."),
     Parameter("vehicle.road_suspension.progression", "Progression", "p", "1/m²", 0.0, 0, 10000, 0, 200, 1,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -115,6 +115,9 @@ class FakeView:
 
     def show_ghost(self, trajectory: Trajectory | None) -> None:
         self.ghosts.append(trajectory)
+
+    def show_beside(self, runs: Sequence[tuple[Trajectory, str]]) -> None:
+        self.beside = list(runs)
 
     def draw(self, time: float) -> None:
         self.times.append(time)

@@ -61,13 +61,11 @@ def main() -> None:
 
         page.keyboard.press("b")
         page.get_by_role("tab", name="Runs").click()
-        page.get_by_text("Suspension", exact=True).click()
         before = explorer.run_number()
-        explorer.control("Suspension damping").fill("2.366")
+        explorer.box("Suspension damping").fill("2.366")
         explorer.wait_for_run(after=before)
         take(explorer, "comparison")
 
-        page.get_by_text("Suspension", exact=True).click()
         page.get_by_text("View", exact=True).first.click()
         page.get_by_text("Dark", exact=True).click()
         page.locator(".trackride-status").click()  # no box has the keys any more

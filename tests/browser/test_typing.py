@@ -72,7 +72,6 @@ def test_what_is_no_number_is_refused_and_not_misread(at_rest: Explorer) -> None
 
 
 def test_values_per_wheel_are_typed_and_shown(at_rest: Explorer) -> None:
-    at_rest.fold("Suspension")
     label, stiffness = "Suspension damping", "Suspension stiffness"
     before = at_rest.run_number()
     type_into(at_rest, label, "5, 0, 0, 0, 0, 5")
@@ -90,7 +89,6 @@ def test_values_per_wheel_are_typed_and_shown(at_rest: Explorer) -> None:
     type_into(at_rest, stiffness, "75")
     at_rest.wait_for_run(after=before)
     at_rest.wait_for_value(stiffness, "now === value", 75)
-    at_rest.fold("Suspension")
 
 
 def test_a_slider_that_was_widened_has_its_range_again_after_a_reset(at_rest: Explorer) -> None:

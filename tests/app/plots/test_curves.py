@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.format.colours import wheel_palette
-from app.plots.curves import Plot, load_plots
+from app.plots.curves import Beside, Plot, load_plots
 from app.plots.ride import ride_plots
 from app.plots.thinning import BUCKETS, thin
 from model.config.config import load_config
@@ -208,3 +208,28 @@ def test_a_run_without_samples_can_be_plotted() -> None:
     for plot in all_plots(make_run(samples=0), make_run()) + all_plots(make_run(), make_run(samples=0)):
         assert len({len(column) for column in plot.data}) == 1
         assert len(plot.data[0]) > 0
+
+
+def test_a_run_beside_adds_one_curve_to_each_plot_in_its_colour():
+    run = make_run()
+    other = make_run(run.config.replace({"drive.speed_kmh": 30}), samples=101)
+    plots = load_plots(run, PALETTE, beside=[Beside("Faster", "#112233", other)])
+    for plot in plots:
+        (at,) = [k for k, curve in enumerate(plot.curves) if curve.kind == "beside"]
+        assert (plot.curves[at].label, plot.curves[at].colour) == ("Faster", "#112233")
+        assert np.isnan(plot.values[-1, at])  # it is shorter
+    road, *_ = plots
+    at = [curve.kind for curve in road.curves].index("beside")
+    largest = other.normal_load[:, : other.system.n].max(axis=1) / 1e3
+    near = np.interp(road.x[road.x <= 1], other.t, largest)
+    assert np.allclose(road.values[road.x <= 1, at], near, atol=0.02)
+    single, *_ = load_plots(run, PALETTE, wheel=1, beside=[Beside("Faster", "#112233", other)])
+    one = np.interp(single.x[single.x <= 1], other.t, other.normal_load[:, 1] / 1e3)
+    assert np.allclose(single.values[single.x <= 1, at], one, atol=0.02)
+
+
+def test_a_run_beside_without_the_singled_wheel_has_no_curve_there():
+    run = make_run()
+    four = make_run(run.config.replace({"vehicle.road_wheels.count": 4}))
+    road, *_ = load_plots(run, PALETTE, wheel=5, beside=[Beside("Four", "#112233", four)])
+    assert "beside" not in [curve.kind for curve in road.curves]

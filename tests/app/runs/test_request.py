@@ -26,3 +26,20 @@ def test_a_configuration_is_a_preset_with_changes() -> None:
     assert first_request(PAPER, config).changes == {SPEED: 22}
     other = load_config("half_round")
     assert first_request(PAPER, other).config() == other
+
+
+def test_one_parameter_is_reset_with_what_goes_with_it() -> None:
+    request = Request(PAPER).changed("drive.speed_kmh", 20).changed("road.type", "half_round")
+    request = request.changed("road.height", 0.15)
+    assert dict(request.reset("drive.speed_kmh").changes) == {"road.type": "half_round", "road.height": 0.15}
+    assert dict(request.reset("road.height").changes) == {"drive.speed_kmh": 20, "road.type": "half_round"}
+    back = request.reset("road.type")
+    assert dict(back.changes) == {"drive.speed_kmh": 20}
+    assert back.config().road.type == "sine"
+    assert "road.type" not in back.touched
+
+
+def test_a_reset_of_positions_brings_the_presets_back() -> None:
+    m113 = load_config("m113")
+    request = Request(m113).changed("vehicle.road_wheels.spacing", 0.6)
+    assert request.reset("vehicle.road_wheels.spacing").config() == m113

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from app.plots.curves import Beside
 from app.runs.history import Kept, Runs
 from app.runs.request import Request
 from model.config.config import Config, ConfigError
@@ -29,14 +30,24 @@ class FakeRunsPanel:
     def numbered(self, name: str) -> int:
         return next(kept.number for kept in self.kept if kept.name == name)
 
-    def show(self, runs: Runs, name: str, now: Kept | None, baseline: Kept | None, before_drive: str) -> None:
+    def show(
+        self,
+        runs: Runs,
+        name: str,
+        now: Kept | None,
+        baseline: Kept | None,
+        before_drive: str,
+        ticked: Collection[int] = (),
+    ) -> None:
+        self.ticked = list(ticked)
         self.kept = list(runs)[::-1]
         self.heading, self.now, self.baseline, self.before_drive = name, now, baseline, before_drive
 
     def show_name(self, name: str) -> None:
         self.name = name
 
-    def compare(self, now: Trajectory, baseline: Trajectory | None) -> None:
+    def compare(self, now: Trajectory, baseline: Trajectory | None, beside: Sequence[Beside] = ()) -> None:
+        self.compared_beside = [other.name for other in beside]
         self.compared.append((now, baseline))
 
 
@@ -72,6 +83,9 @@ class FakeWindow:
 
     def show_baseline(self, baseline: Trajectory | None) -> None:
         self.ghosts.append(baseline)
+
+    def show_beside(self, beside: tuple[Beside, ...]) -> None:
+        self.beside = beside
 
     def set_dark(self, dark: bool) -> None:
         self.dark = dark

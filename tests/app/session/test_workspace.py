@@ -15,7 +15,7 @@ import app.session.workspace
 from app.runs.history import REST, Runs
 from app.runs.request import Finished, Request, first_request
 from app.runs.storage import State, state_from, state_text
-from app.session.workspace import CALM, COMPARE_EVERY, Workspace
+from app.session.workspace import BESIDE, CALM, COMPARE_EVERY, Workspace
 from model.config.config import Config, load_config
 from model.simulation.trajectory import Trajectory
 from tests.app.conftest import Tab, make_run, simulate_at_once, wait_for
@@ -84,6 +84,62 @@ class Visit:
 @pytest.fixture
 def visit() -> Visit:
     return Visit()
+
+
+# ── Runs beside ──
+
+
+def test_kept_runs_are_shown_beside_and_taken_away_again(visit: Visit) -> None:
+    visit.change(SPEED_KEY, 20)
+    visit.change(SPEED_KEY, 30)
+    first, second = (visit.window.runs.numbered(name) for name in ("Paper vehicle", "Speed 15 → 20 km/h"))
+    visit.workspace.tick_run(second)
+    visit.workspace.tick_run(first)
+    assert [other.name for other in visit.window.beside] == ["Speed 15 → 20 km/h", "Paper vehicle"]
+    assert [other.run.config.drive.speed_kmh for other in visit.window.beside] == [20, 15]
+    assert len({other.colour for other in visit.window.beside}) == 2
+    assert visit.window.runs.ticked == [second, first]
+    visit.rest()
+    assert visit.window.runs.compared_beside == ["Speed 15 → 20 km/h", "Paper vehicle"]
+    visit.workspace.tick_run(second)
+    assert [other.name for other in visit.window.beside] == ["Paper vehicle"]
+    visit.workspace.delete(first)
+    assert visit.window.beside == ()
+
+
+def test_eight_runs_are_beside_at_most(visit: Visit) -> None:
+    for speed in range(20, 29):
+        visit.change(SPEED_KEY, speed)
+    numbers = [kept.number for kept in visit.window.runs.kept][:9]
+    for number in numbers:
+        visit.workspace.tick_run(number)
+    assert visit.window.runs.ticked == numbers[:BESIDE]
+    assert visit.window.titles == ["Eight at most"]
+
+
+def test_a_run_beside_of_an_earlier_visit_is_made_again(visit: Visit) -> None:
+    visit.change(SPEED_KEY, 20)
+    visit.change(SPEED_KEY, 30)
+    later = visit.again()
+    number = later.window.runs.numbered("Speed 15 → 20 km/h")
+    later.workspace.tick_run(number)
+    assert later.window.beside == ()
+    missing = later.workspace.missing_run
+    assert missing == PAPER.replace({SPEED_KEY: 20})
+    later.workspace.made_again(missing, make_run(missing))
+    assert [other.name for other in later.window.beside] == ["Speed 15 → 20 km/h"]
+    assert later.workspace.missing_run is None
+
+
+def test_one_that_cannot_be_made_again_is_left_out(visit: Visit) -> None:
+    visit.change(SPEED_KEY, 20)
+    visit.change(SPEED_KEY, 30)
+    later = visit.again()
+    later.workspace.tick_run(later.window.runs.numbered("Speed 15 → 20 km/h"))
+    missing = later.workspace.missing_run
+    assert missing is not None
+    later.workspace.made_again(missing, None)
+    assert later.workspace.missing_run is None
 
 
 # ── Steps ──

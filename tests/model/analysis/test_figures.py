@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from model import load_config, simulate
-from model.analysis.figures import AIR_TIME, DRIFT, ENERGY_ERROR, FIGURES, Row, comparison, figures_by_name
-from model.analysis.ride import Summary, imaginary_share
+from model.analysis.figures import AIR_TIME, DRIFT, ENERGY_ERROR, FIGURES, Row, comparison, figures_by_name, overall
+from model.analysis.ride import Summary, imaginary_share, lift_offs
 from model.simulation.trajectory import Trajectory
 from tests.model.analysis.test_ride import FLAT, RATE, standing
 
@@ -117,6 +117,11 @@ def test_changes_that_mean_nothing_are_left_out():
     assert found["Time in the air, R1"].change is None  # before: never
     assert found["Time in the air, R1"].now == pytest.approx(1 / RATE)
     assert found["Time in the air, R1"].resolution == pytest.approx(1 / RATE)
+    assert (found["Lift-offs, R1"].now, found["Lift-offs, R1"].baseline, found["Lift-offs, R1"].resolved) == (
+        1,
+        0,
+        True,
+    )
     assert found["Peak load, R1"].resolution == 0
     assert found["Suspension travel, R1"].change is None
     longer = standing(samples=9)
@@ -142,3 +147,36 @@ def test_vehicles_with_different_wheels_are_compared_wheel_by_wheel():
     assert found["Peak load, I3"].change is None
     assert "Suspension travel, I1" not in found
     assert next(iter(found)) == "Vertical acceleration, rms"
+
+
+def test_a_figure_of_each_wheel_is_told_for_all_of_them():
+    now, before = standing(), standing()
+    now.normal_load[2, 3], before.normal_load[2, 6] = 9000, 7500
+    now.normal_load[[1, 3], 1], now.normal_load[1, 8] = 0, 0
+    before.normal_load[1, 0] = 0
+    found = {of.row.figure: of for of in overall(comparison(now, before))}
+    peak = found["Peak load"]
+    assert (peak.row.wheel, peak.row.now, peak.baseline_wheel, peak.row.baseline) == ("R4", 9, "I1", 7.5)
+    assert peak.row.change == pytest.approx(20)
+    lift_offs = found["Lift-offs"].row
+    assert (lift_offs.wheel, lift_offs.now, lift_offs.baseline, lift_offs.change) == ("", 2, 1, 100)
+    assert found["Time in the air"].row.now == pytest.approx(2 / RATE)
+    alone = {of.row.figure: of.row for of in overall(comparison(now, None))}
+    assert (alone["Peak load"].now, alone["Peak load"].baseline, alone["Lift-offs"].baseline) == (9, None, None)
+
+
+def test_a_difference_counts_only_where_the_figure_resolves_it():
+    def resolved(now: float, baseline: float | None, label: str = "Peak load", resolution: float = 0.0) -> bool:
+        return Row(label, "R1", "kN", now, baseline, None, resolution).resolved
+
+    assert not resolved(10, 10.05)
+    assert resolved(10, 10.2)
+    assert not resolved(10, None)
+    assert not resolved(0, 0)
+    assert not resolved(0.01, 0.012, AIR_TIME.label, resolution=0.005)
+    assert resolved(0.01, 0.02, AIR_TIME.label, resolution=0.005)
+
+
+def test_lift_offs_count_each_time_that_a_load_is_lost():
+    load = np.array([[1, 0, 1], [0, 0, 1], [0, 1, 0], [1, 0, 1], [0, 1, 0.0]])
+    assert lift_offs(load).tolist() == [2, 1, 2]

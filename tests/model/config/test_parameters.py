@@ -92,9 +92,10 @@ def test_labels_are_told_apart():
     assert len({parameter.label for parameter in PARAMETERS}) == len(PARAMETERS)
 
 
-def test_the_five_what_if_sliders():
+def test_the_first_sliders():
     assert {parameter.key for parameter in PARAMETERS if parameter.what_if} == {
         "vehicle.road_suspension.stiffness",
+        "vehicle.road_suspension.damping",
         "vehicle.imaginary_suspension.stiffness",
         "drive.speed_kmh",
         "road.amplitude",

@@ -148,6 +148,11 @@ vehicle:
         ("name: a\n---\nname: b", "line 2, column 1: a second document; give one"),
         ("drive:\n\tspeed_kmh: 3", "line 2, column 1: a tab; indent with blanks"),
         ("name: a: b", "line 1, column 8: a colon too many"),
+        (
+            "drive:\n  speed_kmh: 3: 4\n",
+            "a colon too many; put texts that hold one in quotes; line 2 is 'speed_kmh: 3: 4'",
+        ),
+        ("drive: {speed_kmh: 3\nname: a\n", "; line 2 is 'name: a'; line 1 is 'drive: {speed_kmh: 3'"),
         ("# a\nname: \x00", "line 2: not YAML text: the character U+0000 is not allowed"),
         ("name: \ud800", "line 1: not YAML text: the character U+D800 is not allowed"),
         (r'name: "\U00110000"', "line 1, column 10: a character or a number that does not exist"),
