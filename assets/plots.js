@@ -317,6 +317,15 @@ if (!window.trackridePlots) {
     }
   });
 
+  // Tabs that were seen before the page was loaded anew come to the front again, once they are there
+  let back = sessionStorage.getItem('trackride-front')?.split(',');
+  const bringBack = () => {
+    const all = [...document.querySelectorAll('[role="tab"]')];
+    const found = back?.map((name) => all.find((tab) => tab.textContent === name));
+    if (!found?.every((tab) => tab)) return;
+    found.forEach((tab) => tab.click());
+    back = null;
+  };
   let front = '';  // names of the tabs that are seen
   const tell = () => {  // in the hidden box beside the page's keys, which is not there while that panel is put away
     const box = document.querySelector('[data-trackride="page"] + div + div input');
@@ -329,10 +338,11 @@ if (!window.trackridePlots) {
   const tabs = new ResizeObserver(() => {  // a tab behind is 0 px wide
     const seen = [...document.querySelectorAll('trackride-tab')].filter((tab) => tab.offsetWidth);
     front = seen.map((tab) => tab.getAttribute('name')).join();
+    if (!back && front) sessionStorage.setItem('trackride-front', front);
     tell();
   });
   customElements.define('trackride-tab', class extends HTMLElement {
     connectedCallback() { tabs.observe(this); }
   });
-  setInterval(() => { window.trackridePlots(); tell(); }, 250);
+  setInterval(() => { window.trackridePlots(); bringBack(); tell(); }, 250);
 }

@@ -30,7 +30,9 @@ class PageSigns(NamedTuple):
     night: viser.GuiCheckboxHandle  # ticked where the browser is set to dark pages
     visit: viser.GuiTextHandle  # what this tab had stored when its page was loaded anew; "null": nothing
     typed: viser.GuiTextHandle  # JSON: viser's name of a box for numbers, what was typed there and is none, a count
-    store: viser.GuiHtmlHandle  # what runs there stores something in the tab
+    place: viser.GuiTextHandle  # where in its run the tab was, and its camera; told as `visit` is
+    store: viser.GuiHtmlHandle  # what runs there stores something in the tab: its visit …
+    store_place: viser.GuiHtmlHandle  # … and its place
     title: viser.GuiHtmlHandle  # see title_html
 
 
@@ -46,7 +48,8 @@ def add_page(gui: viser.GuiApi) -> PageSigns:
     night = gui.add_checkbox("Dark pages", False)
     visit = gui.add_text("Visit", "")
     typed = gui.add_text("Typed", "")
-    store = gui.add_html("")
+    place = gui.add_text("Place", "")
+    store, store_place = gui.add_html(""), gui.add_html("")
     rules = style(
         asset("page.css"),
         id="trackride-style",
@@ -54,16 +57,24 @@ def add_page(gui: viser.GuiApi) -> PageSigns:
         data_night=night._impl.uuid,
         data_visit=visit._impl.uuid,
         data_typed=typed._impl.uuid,
+        data_place=place._impl.uuid,
         data_decimals=str(PRECISION),
     )
     intro = element("p", INTRO, class_="trackride-intro")
     page.content = str(joined((running(asset("page.js")), intro, rules)))
-    return PageSigns(in_view, in_front, night, visit, typed, store, title)
+    return PageSigns(in_view, in_front, night, visit, typed, place, store, store_place, title)
 
 
 def store_visit(signs: PageSigns, state: str) -> None:
     """Have the tab store a text, which it tells when its page is loaded anew. Other tabs do not see it."""
     signs.store.content = str(running("sessionStorage.setItem('trackride', this.dataset.state)", data_state=state))
+
+
+def store_place(signs: PageSigns, place: str) -> None:
+    """Have the tab store its place in the same way."""
+    signs.store_place.content = str(
+        running("sessionStorage.setItem('trackride-place', this.dataset.place)", data_place=place)
+    )
 
 
 def title_html(config: Config) -> str:

@@ -59,6 +59,11 @@ class Workspace:
         """The run that others are compared with."""
         return None if self._baseline is None else self._baseline.run
 
+    @property
+    def stands(self) -> bool:
+        """Whether the browser has told what it has stored, and nothing that was requested is still to come."""
+        return self._restored and same(self._runner.latest, self._changes.present)
+
     # ── What happens ──
 
     def finished(self, done: Finished, now: float) -> None:

@@ -15,6 +15,7 @@ from app.view3d.camera import Camera, Standpoint, Tab, about_as_long
 from app.view3d.ghost import Ghost
 from app.view3d.labels import WheelLabels
 from app.view3d.nodes import RoadNodes, Surroundings, VehicleNodes
+from app.view3d.obstacle_mark import ObstacleMark
 from app.view3d.overlays import SWITCHES, Overlays
 from app.view3d.snapshot import Scene, build_scene, live_scene
 from model.analysis.ride import WheelState, wheel_state
@@ -44,6 +45,8 @@ class View3D:
         self._scene: Scene | None = None
         self._nodes: _Nodes | None = None
         self._ghost: Ghost | None = None
+        self._marks_obstacle = False
+        self._obstacle: ObstacleMark | None = None
         self._picked: Callable[[int], None] = lambda wheel: None
         self._time = 0.0
         self._live = False  # a drive is shown, which has no time in common with a ghost
@@ -108,6 +111,8 @@ class View3D:
             nodes.overlays.draw(scene, now)
             if self._ghost is not None and not self._live:
                 self._ghost.draw(time, now.x - now.origin)
+            if self._obstacle is not None:
+                self._obstacle.draw(scene, now)
             self._surroundings.draw(scene, now)
 
     def set_view(self, standpoint: Standpoint) -> None:
@@ -128,6 +133,20 @@ class View3D:
     def on_pick(self, act: Callable[[int], None]) -> None:
         """Call act(wheel), which must not block, on the event loop when the user clicks a wheel (model's order)."""
         self._picked = act
+
+    def mark_obstacle(self, on: bool) -> None:
+        """Mark the obstacle of the road, also of the roads to come, until the vehicle has passed it; or no more."""
+        if on != self._marks_obstacle:
+            self._marks_obstacle = on
+            self._mark()
+            self.draw(self._time)
+
+    def _mark(self) -> None:
+        with self._client.atomic():
+            if self._obstacle is not None:
+                self._obstacle.remove()
+            scene = self._scene if self._marks_obstacle and not self._live else None
+            self._obstacle = None if scene is None else ObstacleMark(self._client.scene, scene)
 
     def set_switch(self, name: str, on: bool) -> None:
         """Turn one of app.view3d.overlays.SWITCHES on or off. Raises ValueError for another name."""
@@ -206,6 +225,8 @@ class View3D:
             self.set_view("side")
         else:
             self._camera.fit(scene.measures)
+        if self._marks_obstacle:
+            self._mark()
 
     def _build(self, scene: Scene) -> None:
         """Make vehicle, road and overlays anew."""
