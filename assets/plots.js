@@ -323,7 +323,7 @@ if (!window.trackridePlots) {
     const all = [...document.querySelectorAll('[role="tab"]')];
     const found = back?.map((name) => all.find((tab) => tab.textContent === name));
     if (!found?.every((tab) => tab)) return;
-    found.forEach((tab) => tab.click());
+    found.forEach((tab) => tab.dispatchEvent(new KeyboardEvent('keydown', {key: 'Enter', bubbles: true})));
     back = null;
   };
   let front = '';  // names of the tabs that are seen

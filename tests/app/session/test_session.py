@@ -329,7 +329,7 @@ def test_an_obstacle_that_the_user_is_led_back_to_is_marked_until_the_run_plays(
     tab.use("Time, s", 3.9)
     wait_for(lambda: view.times[-1] == 3.9)
     assert not view.marks_obstacle
-    tab.use("Type", "step")
+    tab.use("Road type", "step")
     wait_for(lambda: view.marks_obstacle, "the mark")
     assert view.times[-1] < 3.0
     tab.press("Play or pause")

@@ -333,7 +333,7 @@ def test_an_obstacle_is_marked_on_its_road_until_the_vehicle_has_passed(tab: Tab
     view.draw(0.0)
     nodes, uneven = tab.scene._handle_from_node_name, kerb.road.uneven
     assert uneven is not None
-    assert nodes["/obstacle/name"].text == "Kerb"
+    assert nodes["/obstacle/name"].text == "Step"
     ends = nodes["/obstacle/line"].points
     assert ends[..., 0].max() == pytest.approx(uneven[1] - uneven[0], abs=1e-5)
     at = [m.position[0] for m in tab.sent() if m.name == "/obstacle" and hasattr(m, "position")][-1]
