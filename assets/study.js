@@ -31,6 +31,14 @@ if (!window.trackrideStudy) {
     localStorage.setItem(KEPT, JSON.stringify(study.choice));
     tell('choice', study.choice);
     draw();
+    strips();
+    matters();
+  };
+  const keepingFocus = (within, rebuild) => {  // on the same button or list after it is made anew
+    const all = () => [...within.querySelectorAll('button, select, summary, input')];
+    const place = all().indexOf(document.activeElement);
+    rebuild();
+    all()[place]?.focus({preventScroll: true});
   };
 
   // ── Numbers ──
@@ -204,7 +212,7 @@ if (!window.trackrideStudy) {
       marks.forEach((tick) => svg.append(
         make('path', {d: `M${x(tick).toFixed(1)} ${base - between}v4`, stroke: colours.frame}),
         text(x(tick), base + 6, words(tick, 4), {
-          fill: colours.dim, size: 10, anchor: narrow && tick === column.low ? 'start' : narrow ? 'end' : 'middle',
+          fill: colours.dim, size: 10, anchor: x(tick) < start + 8 ? 'start' : x(tick) > start + wide - 8 ? 'end' : 'middle',
         }),
       ));
       names[c].forEach((line, k) => svg.append(
@@ -270,7 +278,7 @@ if (!window.trackrideStudy) {
         const value = snap(held.column, valueAt(held, place(event)[0]));
         if (value === held.told) return;
         tell('set', {[held.column.key]: held.told = value});
-        held.column.now = value;
+        held.column.now = study.sliders[held.column.key] ? held.column.now : value;  // ahead of the server
         drawn.mark();
       };
       svg.addEventListener('pointerdown', (event) => {
@@ -455,7 +463,7 @@ if (!window.trackrideStudy) {
         const found = spot(event);
         if (!found) return;
         tell('set', {[data.x.key]: found.a, [data.y.key]: found.b});
-        [data.x.now, data.y.now] = [found.a, found.b];
+        [data.x.now, data.y.now] = [found.a, found.b];  // ahead of the server
         drawn.mark();
       });
       svg.addEventListener('pointermove', (event) => {
@@ -641,10 +649,10 @@ if (!window.trackrideStudy) {
   };
 
   // ── The tab ──
-  const save = (name, type, content) => {
-    const link = html('a', {download: name, href: URL.createObjectURL(new Blob([content], {type}))});
+  const save = (name, type, content) => {  // this script runs in a picture's handler, where URL is the document's address
+    const link = html('a', {download: name, href: window.URL.createObjectURL(new Blob([content], {type}))});
     link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+    setTimeout(() => window.URL.revokeObjectURL(link.href), 10_000);
   };
   const svgText = (svg) => {
     const {width, height} = svg.viewBox.baseVal;
@@ -687,7 +695,7 @@ if (!window.trackrideStudy) {
   const draw = () => {
     const page = study.page;
     if (!page?.isConnected) return;
-    if (drawn?.held?.()) return void (study.due = true);
+    if (drawn?.held?.() || study.picking) return void (study.due = true);  // not under the user's hand
     if (study.large !== page.matches(':popover-open')) study.large ? page.showPopover() : page.hidePopover();
     page.classList.toggle('large', study.large);
     if (!study.large) page.removeAttribute('style');
@@ -695,6 +703,9 @@ if (!window.trackrideStudy) {
     const {view: name} = study.choice, view = study.views[name], data = study.data[name];
     let [width, height] = study.large ? fill() : [page.clientWidth - 20, innerHeight - page.getBoundingClientRect().top - 88];
     [width, height] = [Math.max(width, 260), Math.max(height, 240)];
+    keepingFocus(page, () => build(page, view, name, data, width, height));
+  };
+  const build = (page, view, name, data, width, height) => {
     const open = page.querySelector('details')?.open ?? false;
     const head = html('div', {className: 'head'},
       html('div', {className: 'views'}, ...Object.entries(VIEWS).filter(([one]) => study.views[one]).map(([one, label]) =>
@@ -757,7 +768,7 @@ if (!window.trackrideStudy) {
     const told = html('span', {textContent: !on ? '' : !chosen ? '…' : last ? `: mostly ${what}` : ': nothing changes it'});
     const toggle = html('input', {type: 'checkbox', checked: on, ariaLabel: 'What each slider would do',
       title: 'Show on each slider how this figure changes along it', onchange: () => choose({strips: toggle.checked})});
-    line.replaceChildren(toggle, html('div', {}, list, told));
+    keepingFocus(line, () => line.replaceChildren(toggle, html('div', {}, list, told)));
     line.title = told.textContent.slice(2);
   });
 
@@ -805,9 +816,15 @@ if (!window.trackrideStudy) {
   document.addEventListener('keydown', (event) => {
     if (event.key === 'Escape' && study.large) enlarge(false);
   });
+  const lists = 'trackride-study select';
+  document.addEventListener('pointerdown', ({target}) => study.picking = Boolean(target.closest?.(lists)), true);
+  for (const end of ['change', 'focusout', 'keydown'])
+    document.addEventListener(end, ({target}) => { if (target.closest?.(lists)) study.picking = false; }, true);
   setInterval(() => {
     drawn?.mark?.();
-    if (study.due && !drawn?.held?.()) { study.due = false; draw(); }
+    const columns = study.choice.view === 'profiler' ? study.data.profiler?.columns ?? [] : [];
+    study.page?.querySelector('.body')?.classList.toggle('stale', columns.some((one) => present(one) !== one.now));
+    if (study.due && !drawn?.held?.() && !study.picking) { study.due = false; draw(); }
     strips();
   }, 150);
 }

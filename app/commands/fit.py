@@ -30,9 +30,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
 EXAMPLE = (
-    "Example, with a record made by a run: trackride run half_round --set vehicle.road_suspension.damping=6000 "
-    "--out record.csv && trackride fit half_round --measured record.csv "
-    "--over vehicle.road_suspension.damping=1000:20000 --low-pass 20 --out build/fit"
+    "Example: trackride fit half_round --measured record.csv --over vehicle.road_suspension.damping=1000:20000 "
+    "--low-pass 20 --out build/fit. A record to try it on: trackride run half_round "
+    "--set vehicle.road_suspension.damping=6000 --out record.csv"
 )
 
 

@@ -5,7 +5,10 @@ from __future__ import annotations
 from functools import cache
 from importlib import resources
 
-EXPLORER = ("page.js", "page.css", "plots.js", "plots.css", "wheel.css", "runs.css", "modal.css")  # what its page needs
+EXPLORER = (  # what its page needs
+    *("page.js", "page.css", "plots.js", "plots.css", "study.js", "study.css"),
+    *("wheel.css", "runs.css", "modal.css"),
+)
 
 
 @cache

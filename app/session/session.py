@@ -493,14 +493,13 @@ class Session:
     def _study(self, now: float, driving: bool) -> None:
         """Let studies begin or end, as it suits what the user does."""
         latest, good, baseline = self._runner.latest, self._good, self._workspace.baseline
-        whole = isinstance(good, Finished) and good.trajectory.complete
         self._studies.tick(
             now,
             Situation(
                 number=latest.number,
                 shown=good.request.number if good is not None else -1,
                 touched=bool(latest.touched),
-                config=good.trajectory.config if whole and isinstance(good, Finished) else None,
+                config=good.trajectory.config if isinstance(good, Finished) else None,
                 baseline=None if baseline is None else baseline.config,
                 front=self._window.study_in_front,
                 record=self._record,

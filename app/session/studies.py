@@ -61,13 +61,12 @@ class Studies:
         """Begin a study, or give one up; `now`, s. To be called several times a second."""
         if situation.number != self._seen:
             self._seen, self._since = situation.number, now
-            self._give_up()
-        if situation.hurries:
-            self._give_up()
+            self._begin_anew()  # also when it leads to what is shown: the page may have gone ahead
+        if situation.hurries and not self._ended:
+            self._begin_anew()
         about = self._about(situation)
         if about != self._studied:
-            self._job.stop()
-            self._studied = None
+            self._begin_anew()
         rested = not situation.touched or now - self._since >= REST
         settled = situation.number == situation.shown and not situation.hurries
         if about is None or about == self._studied or not (rested and settled) or self._job.busy:
@@ -83,11 +82,10 @@ class Studies:
     def close(self) -> None:
         self._job.close()
 
-    def _give_up(self) -> None:
-        """What is under way; it may begin again."""
-        if not self._ended:
-            self._job.stop()
-            self._studied = None
+    def _begin_anew(self) -> None:
+        """Give up what is under way, and study again when it is time for that."""
+        self._job.stop()
+        self._studied = None
 
     def _about(self, situation: Situation) -> tuple[object, ...] | None:
         """What is to be studied; None: nothing."""

@@ -189,12 +189,12 @@ def laid_over(base: Config, record: Signal, low_pass: float | None = None, at: P
     signal = _measured(base, at, {})
     if signal is None:
         raise DesignError("the run did not come to its end")
-    t, a = _filtered(record, low_pass)
-    signal = _filtered(signal, low_pass)
-    guess = _Problem(lambda _: [], (t, a), (), low_pass).guess(signal)
+    problem = _Problem(lambda _: [], record, (), low_pass)
+    signal = problem.in_band(signal)
+    guess = problem.guess(signal)
     if guess is None:
         raise DesignError("run and record last too differently; let the run last about as long")
-    lag = guess[1]
+    t, a, lag = *problem.record, guess.lag
     within = (t - lag >= signal[0][0]) & (t - lag <= signal[0][-1])
     t, a = t[within], a[within]
     simulated = np.interp(t - lag, *signal)
@@ -275,7 +275,7 @@ class _Problem:
         new = [key for key in dict.fromkeys(keys) if key not in self._known]
         changes = [{of.key: of.at(part) for of, part in zip(self.over, key, strict=True)} for key in new]
         for key, signal in zip(new, self.runs(changes), strict=True):
-            self._known[key] = None if signal is None else self._in_band(signal)
+            self._known[key] = None if signal is None else self.in_band(signal)
         self.count += len(new)
         return [self._known[key] for key in keys]
 
@@ -285,14 +285,14 @@ class _Problem:
         self.count += 1
         if signal is None:
             return None
-        signal = self._in_band(signal)
+        signal = self.in_band(signal)
         guess = self.guess(signal)
         if guess is None:
             return None
         value = np.interp(self.t - guess.lag, *signal)
         return value + np.mean(self.a - value)
 
-    def _in_band(self, signal: Signal) -> Signal:
+    def in_band(self, signal: Signal) -> Signal:
         """A run's signal in the band in which it is compared; the first one settles the band."""
         if not self._band_known:
             self._band_known = True

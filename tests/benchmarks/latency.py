@@ -91,8 +91,8 @@ def watched(owner: type, name: str, note: Callable[..., None]) -> Iterator[None]
         setattr(owner, name, method)
 
 
-def measure() -> dict[str, tuple[float, str]]:
-    """Name -> figure and its unit: the whole way and its parts, median and 95 %."""
+def measure(studies: bool = True) -> dict[str, tuple[float, str]]:
+    """Name -> figure and its unit: the whole way and its parts, median and 95 %; studies: they may run beside it."""
     watch, shown = Watch(), [0.0]
 
     def on_change(key: str, value: float) -> None:
@@ -114,6 +114,7 @@ def measure() -> dict[str, tuple[float, str]]:
         try:
             explorer = Explorer(browser.new_page(viewport={"width": 1280, "height": 720}))
             explorer.open(f"{server.address}/?fixedDpr=0.5")
+            explorer.page.get_by_label("What each slider would do").set_checked(studies)
             explorer.page.wait_for_timeout(2000)
             explorer.page.evaluate(WATCH)
             explorer.thumb("Speed").focus()
@@ -150,5 +151,7 @@ def figures(watch: Watch, values: np.ndarray, pressed: list[float], drawn: list[
 
 
 if __name__ == "__main__":
-    for what, (value, unit) in measure().items():
-        print(f"{what:50} {value:8.1f} {unit}")
+    for studies in (False, True, False, True):  # in turn, as other work on the machine comes and goes
+        print("with studies" if studies else "without studies")
+        for what, (value, unit) in measure(studies).items():
+            print(f"{what:50} {value:8.1f} {unit}")

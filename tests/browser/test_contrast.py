@@ -9,7 +9,7 @@ from playwright.sync_api import expect
 
 from tests.browser.driver import SOON, Explorer
 
-TABS = "Loads", "Ride", "Spectrum", "Load map", "Runs", "Trust", "About"
+TABS = "Loads", "Ride", "Spectrum", "Load map", "Runs", "Study", "Trust", "About"
 LEAST = 4.5  # contrast of small text, WCAG 2.2, success criterion 1.4.3
 
 # Texts with less contrast to what they stand on than asked for: [text, contrast]. What cannot be used may be pale.

@@ -108,10 +108,10 @@ MUTANTS = (
     ),
     Mutant(VALIDATION, "if number.is_integer():", "if number == number:"),
     Mutant(VALIDATION, "if np.abs(under).max() <= LEVEL:", "if np.abs(under).min() <= LEVEL:"),
-    Mutant(COMFORT, "if rate < LEAST_RATE:", "if rate < LEAST_RATE / 2:"),
+    Mutant(COMFORT, "output_rate < LEAST_RATE:", "output_rate < LEAST_RATE / 2:"),
     Mutant(COMFORT, "(s + 63) * (s**2 + 24 * s + 750)", "(s + 63) * (s**2 + 24 * s + 650)"),
-    Mutant(COMFORT, "(np.sum(energy**2) / rate) ** 0.25", "(np.sum(energy) / rate) ** 0.5"),
-    Mutant(COMFORT, "np.abs(felt).max()) / rms", "felt.max()) / rms"),
+    Mutant(COMFORT, "(np.sum(self._energy**2) / self._rate) ** 0.25", "(np.sum(self._energy) / self._rate) ** 0.5"),
+    Mutant(COMFORT, "np.abs(self._felt).max()) / self.vertical", "self._felt.max()) / self.vertical"),
     Mutant(COMFORT, "SHOCK_LIMIT = 30.0", "SHOCK_LIMIT = 60.0"),
     Mutant(COMFORT, "RUNNING = 1.0", "RUNNING = 2.0"),
     Mutant(COMFORT, "(0.4, 100.0, transition)", "(0.8, 100.0, transition)"),
@@ -122,7 +122,7 @@ MUTANTS = (
     Mutant(RIDE, "np.mean(share[grounded])", "np.mean(share)"),
     Mutant(FIGURES, "of.travel_up - of.travel_down", "of.travel_up + of.travel_down"),
     Mutant(FIGURES, "100 * (value / reference - 1)", "100 * value / reference"),
-    Mutant(FIGURES, "max(most, value)", "min(most, value)"),
+    Mutant(FIGURES, "max(wheels.values(), default=None)", "min(wheels.values(), default=None)"),
     Mutant(TRAJECTORY, "gained = kinetic + gravity - self.work", "gained = kinetic + gravity"),
 )
 

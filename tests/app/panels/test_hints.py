@@ -9,7 +9,7 @@ from typing import Any
 
 from tests.app.conftest import Tab, wait_for
 
-NOT_SEEN = "In view", "Tabs in front", "Dark pages", "Visit", "Typed", "Place"  # that only the page itself uses
+NOT_SEEN = "In view", "Tabs in front", "Dark pages", "Visit", "Typed", "Place", "Study"  # that only the page itself uses
 
 
 def test_every_control_has_a_hint_that_says_more_than_its_label(explore: Any, open_tab: Any) -> None:

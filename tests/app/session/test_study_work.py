@@ -72,6 +72,18 @@ def test_sliders_that_are_no_column_have_curves_for_their_strips(bench: Bench) -
     assert shown["road.amplitude"] is False
 
 
+def test_a_run_that_diverges_has_no_figures_but_the_curves_around_it(bench: Bench) -> None:
+    complete = bench.evaluate
+    bench.evaluate = lambda jobs: [  # type: ignore[method-assign]
+        Outcome("diverged at 1 s", (None,) * len(job.figures)) if bench.speed(job) == 15 else complete([job])[0]
+        for job in jobs
+    ]
+    _, data = bench.of(CHOICE)[-1]
+    assert data["figures"][0]["now"] is None
+    column = next(column for column in data["columns"] if column["shown"])
+    assert [x for x, y in zip(column["x"], column["y"][0], strict=True) if y is None] == [15.0]
+
+
 def test_loads_of_a_light_vehicle_are_told_in_newtons(bench: Bench) -> None:
     _, data = bench.of(CHOICE, config=load_config("robot"))[-1]
     assert data["figures"][0]["unit"] == "N"

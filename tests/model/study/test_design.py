@@ -7,7 +7,7 @@ import pytest
 
 from model import load_config, simulate
 from model.analysis.figures import FIGURE, figures_by_name
-from model.analysis.ride import summary
+from model.analysis.ride import Summary
 from model.study.design import DesignError, Grid, Range, Values, checked_figures, make_study, parse_varied
 from tests.model.support import PAPER, WHEELS
 
@@ -114,7 +114,7 @@ def test_figures_are_known_by_name_and_wheel():
     assert checked_figures(["shock", " peak_load.I5", "shock"], PAPER) == ("shock", "peak_load.I5")
     every = checked_figures([], PAPER)
     assert every[:16] == tuple(FIGURE)
-    assert set(every) == set(figures_by_name(summary(simulate(PAPER.replace({"simulation.duration": 1})))))
+    assert set(every) == set(figures_by_name(Summary(simulate(PAPER.replace({"simulation.duration": 1})))))
     for name, words in {
         "peak_loads": "the nearest one is peak_load",
         "peak_load.I6": "give peak_load.R1 … peak_load.I5",
