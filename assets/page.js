@@ -22,12 +22,13 @@ const tell = (name, text) => {
   const id = document.getElementById('trackride-style')?.dataset[name];
   const label = document.querySelector(`label[for="${id}"]`);
   const sign = label?.closest('[data-trackride="page"] ~ div')?.querySelector('input');
-  if (!sign) return setTimeout(tell, 100, name, text);  // the page is still being built
+  if (!sign) return setTimeout(() => trackrideInTurn(() => tell(name, text)), 100);  // the page is still being built
   set(sign, text);
   pass(sign);
 };
 // viser sends what is set in a page every 50 ms at most, and of what is set in between only the last: all that is told
-// to the server takes its turn, here and in plots.js
+// to the server takes its turn, here and in plots.js. A turn begins 100 ms after the one before it has begun, not when
+// it was due: a busy page lets timers that are overdue run one right after the other.
 window.trackrideInTurn ??= (() => {
   const waiting = [];
   let busy = false;
@@ -51,6 +52,7 @@ window.trackrideAsk = (kind, content) => trackrideInTurn(() => tell('asked', JSO
 if (window.trackrideOpened) trackrideAsk('link', trackrideOpened);
 // A tab whose page is loaded anew goes on where it was, whatever other tabs of this browser have stored since
 trackrideInTurn(() => tell('visit', sessionStorage.getItem('trackride') ?? 'null'));
+trackrideInTurn(() => tell('place', sessionStorage.getItem('trackride-place') ?? 'null'));
 if (!document.body.dataset.trackride) {
   document.body.dataset.trackride = 'keys';
   // viser turns and moves the camera with some of our keys, wherever they are pressed, on a slider too

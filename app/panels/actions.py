@@ -184,6 +184,9 @@ class Actions(Protocol):
     def set_in_front(self, tabs: frozenset[str]) -> None:
         """Only the tabs that are seen keep up with a drag."""
 
+    def return_to(self, place: str) -> None:
+        """The tab was at this place (app/runs/storage.py) when its page was loaded anew."""
+
     def recollect(self, visit: str) -> None:
         """Go on where the tab was before its page was loaded anew: `visit` is what it has stored.
 

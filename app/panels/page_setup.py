@@ -34,8 +34,10 @@ class PageSigns(NamedTuple):
     size: viser.GuiTextHandle  # JSON: width and height of the page, and the view's width, px
     at: viser.GuiTextHandle  # JSON: a time in a plot that was clicked, s, and a count
     asked: viser.GuiTextHandle  # JSON: kind, content and a count of what the page asks for (page_requests.py)
+    place: viser.GuiTextHandle  # where in its run the tab was, and its camera; told as `visit` is
     layout: viser.GuiHtmlHandle  # see layout_html
-    store: viser.GuiHtmlHandle  # what runs there stores something in the tab
+    store: viser.GuiHtmlHandle  # what runs there stores something in the tab: its visit …
+    store_place: viser.GuiHtmlHandle  # … and its place
     title: viser.GuiHtmlHandle  # see title_html
 
 
@@ -54,8 +56,9 @@ def add_page(gui: viser.GuiApi) -> PageSigns:
     size = gui.add_text("Size", "")
     at = gui.add_text("At", "")
     asked = gui.add_text("Asked", "")
+    place = gui.add_text("Place", "")
     layout = gui.add_html("")
-    store = gui.add_html("")
+    store, store_place = gui.add_html(""), gui.add_html("")
     rules = style(
         asset("page.css"),
         id="trackride-style",
@@ -66,16 +69,24 @@ def add_page(gui: viser.GuiApi) -> PageSigns:
         data_size=size._impl.uuid,
         data_at=at._impl.uuid,
         data_asked=asked._impl.uuid,
+        data_place=place._impl.uuid,
         data_decimals=str(PRECISION),
     )
     intro = element("p", INTRO, class_="trackride-intro")
     page.content = str(joined((running(asset("page.js")), intro, rules)))
-    return PageSigns(in_view, in_front, night, visit, typed, size, at, asked, layout, store, title)
+    return PageSigns(in_view, in_front, night, visit, typed, size, at, asked, place, layout, store, store_place, title)
 
 
 def store_visit(signs: PageSigns, state: str) -> None:
     """Have the tab store a text, which it tells when its page is loaded anew. Other tabs do not see it."""
     signs.store.content = str(running("sessionStorage.setItem('trackride', this.dataset.state)", data_state=state))
+
+
+def store_place(signs: PageSigns, place: str) -> None:
+    """Have the tab store its place in the same way."""
+    signs.store_place.content = str(
+        running("sessionStorage.setItem('trackride-place', this.dataset.place)", data_place=place)
+    )
 
 
 def title_html(config: Config) -> str:

@@ -23,7 +23,15 @@ from app.panels.files_panel import FilesPanel
 from app.panels.notifications import Notifications
 from app.panels.page_layout import PageLayout, page_layout
 from app.panels.page_requests import carry_out
-from app.panels.page_setup import add_hints, add_page, apply_theme, layout_html, store_visit, title_html
+from app.panels.page_setup import (
+    add_hints,
+    add_page,
+    apply_theme,
+    layout_html,
+    store_place,
+    store_visit,
+    title_html,
+)
 from app.panels.palette import add_palette
 from app.panels.parameter_panel import ParameterPanel
 from app.panels.playback_panel import PlaybackPanel, covered
@@ -38,6 +46,7 @@ from app.plots.curves import Beside
 from app.runs.drive import DriveState
 from app.runs.playback import Playback
 from app.runs.request import Driven, Failed, Finished, Refused, Request
+from app.runs.storage import Place
 from app.tabs.road_profile import RoadAhead
 from app.view3d.mode_animation import PERIOD, ModeShow
 from model.analysis.ride import WheelState
@@ -82,6 +91,8 @@ class VehicleView(Protocol):
     def load_top(self) -> float | None: ...
 
     def set_view(self, standpoint: Any) -> None: ...
+
+    def mark_obstacle(self, on: bool) -> None: ...
 
     def set_switch(self, name: str, on: bool) -> None: ...
 
@@ -135,6 +146,7 @@ class Window:
             )
             signs.night.on_update(by_user(lambda event: actions.prefer_dark(event.target.value), actions.fail))
             signs.visit.on_update(by_user(lambda event: actions.recollect(event.target.value), actions.fail))
+            signs.place.on_update(by_user(lambda event: actions.return_to(event.target.value), actions.fail))
             signs.typed.on_update(
                 by_user(lambda event: self._controls.enter(*json.loads(event.target.value)[:2]), actions.fail)
             )
@@ -523,6 +535,28 @@ class Window:
     def store(self, state: str) -> None:
         """Have the tab store a text until its page is loaded anew."""
         store_visit(self._signs, state)
+
+    def place(self, playback: Playback) -> Place:
+        """Where we are, and where the camera stands."""
+        camera = self._client.camera
+        position, look_at = (tuple(np.round(point, 3).tolist()) for point in (camera.position, camera.look_at))
+        return Place(round(playback.time, 3), playback.playing, position, look_at)
+
+    def store_place(self, place: str) -> None:
+        """Have the tab store a text until its page is loaded anew."""
+        store_place(self._signs, place)
+
+    def look_from(self, place: Place) -> None:
+        """Move the camera there."""
+        camera = self._client.camera
+        with self._client.atomic():
+            camera.position = np.array(place.position)
+            camera.look_at = np.array(place.look_at)
+
+    @property
+    def shows_run(self) -> bool:
+        """Whether the 3-D view shows a run by now."""
+        return self._drawn is not None
 
     def show_progress(self, doing: str) -> None:
         """Say what is being made for a download; empty: nothing."""

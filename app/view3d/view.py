@@ -15,6 +15,7 @@ from app.view3d.camera import Camera, Standpoint, Tab, about_as_long
 from app.view3d.ghost import GHOST, Ghost
 from app.view3d.labels import WheelLabels
 from app.view3d.nodes import RoadNodes, Surroundings, VehicleNodes
+from app.view3d.obstacle_mark import ObstacleMark
 from app.view3d.overlays import SWITCHES, Overlays
 from app.view3d.snapshot import Scene, build_scene, live_scene
 from model.analysis.ride import WheelState, wheel_state
@@ -45,6 +46,8 @@ class View3D:
         self._nodes: _Nodes | None = None
         self._ghost: Ghost | None = None
         self._beside: list[Ghost] = []  # of runs beside the baseline
+        self._marks_obstacle = False
+        self._obstacle: ObstacleMark | None = None
         self._picked: Callable[[int], None] = lambda wheel: None
         self._height, self._type = 900, 1.0  # px of the picture, and type by its usual size
         self._marked: int | None = None  # wheel that is picked
@@ -126,6 +129,8 @@ class View3D:
             if not self._live:
                 for ghost in self._ghosts:
                     ghost.draw(time, now.x - now.origin)
+            if self._obstacle is not None:
+                self._obstacle.draw(scene, now)
             self._surroundings.draw(scene, now)
 
     def set_view(self, standpoint: Standpoint) -> None:
@@ -153,6 +158,20 @@ class View3D:
         if self._nodes is not None:
             self._nodes.overlays.pick(wheel)
             self.draw(self._time)
+
+    def mark_obstacle(self, on: bool) -> None:
+        """Mark the obstacle of the road, also of the roads to come, until the vehicle has passed it; or no more."""
+        if on != self._marks_obstacle:
+            self._marks_obstacle = on
+            self._mark()
+            self.draw(self._time)
+
+    def _mark(self) -> None:
+        with self._client.atomic():
+            if self._obstacle is not None:
+                self._obstacle.remove()
+            scene = self._scene if self._marks_obstacle and not self._live else None
+            self._obstacle = None if scene is None else ObstacleMark(self._client.scene, scene)
 
     def set_switch(self, name: str, on: bool) -> None:
         """Turn one of app.view3d.overlays.SWITCHES on or off. Raises ValueError for another name."""
@@ -253,6 +272,8 @@ class View3D:
             self.set_view("side")
         else:
             self._camera.fit(scene.measures)
+        if self._marks_obstacle:
+            self._mark()
 
     def _build(self, scene: Scene) -> None:
         """Make vehicle, road and overlays anew."""

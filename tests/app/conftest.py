@@ -104,6 +104,7 @@ class FakeView:
         self.times: list[float] = []
         self.views: list[str] = []
         self.threads: set[str] = set()
+        self.marks_obstacle = False
 
     def show(self, trajectory: Trajectory) -> None:
         self.runs.append(trajectory)
@@ -143,6 +144,9 @@ class FakeView:
     def set_view(self, standpoint: str) -> None:
         self.views.append(standpoint)
 
+    def mark_obstacle(self, on: bool) -> None:
+        self.marks_obstacle = on
+
     def set_switch(self, name: str, on: bool) -> None:
         self.switches[name] = on
 
@@ -168,11 +172,12 @@ class Tab:
         mute: bool = False,
         stands: bool = True,
         visit: str = "null",
+        place: str = "null",
     ) -> None:
         """storage: what the browser has kept from earlier visits; mute: it does not tell.
 
         stands: the page says, as soon as it can, that its panels stand with the loads in front.
-        visit: what the tab has stored itself before its page was loaded anew.
+        visit, place: what the tab has stored itself before its page was loaded anew.
         """
         self._socket = connect(
             explorer.address.replace("http", "ws"),
@@ -183,7 +188,8 @@ class Tab:
         self.widgets: dict[str, dict[str, Any]] = {}  # uuid -> type, value and props
         self.notifications: list[dict[str, Any]] = []
         self.storage: dict[str, str] = {} if storage is None else storage
-        self._mute, self._stands, self._visit = mute, stands, visit
+        self._mute, self._stands = mute, stands
+        self._stored = {"Visit": visit, "Place": place}
         self.messages: list[dict[str, Any]] = []
         self._thread = threading.Thread(target=self._listen, daemon=True)
         self._thread.start()
@@ -292,8 +298,9 @@ class Tab:
             self.widgets[message["uuid"]] = message
             if self._stands and message["props"].get("label") == "Tabs in front":
                 self.send("GuiUpdateMessage", uuid=message["uuid"], updates={"value": "Loads"})
-            if message["props"].get("label") == "Visit":
-                self.send("GuiUpdateMessage", uuid=message["uuid"], updates={"value": self._visit})
+            if message["props"].get("label") in self._stored:
+                stored = self._stored[message["props"]["label"]]
+                self.send("GuiUpdateMessage", uuid=message["uuid"], updates={"value": stored})
         elif kind == "LocalStorageSetItemMessage":
             self.storage[message["key"]] = message["value"]
         elif kind == "LocalStorageGetItemRequestMessage" and not self._mute:

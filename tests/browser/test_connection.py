@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+from itertools import pairwise
 
 from playwright.sync_api import Browser, expect
 
@@ -25,6 +26,14 @@ def test_a_page_waits_for_its_server_and_comes_back_as_it_was(browser: Browser) 
             "text => Object.values(localStorage).some(stored => stored.includes(text))", arg='"drive.speed_kmh": 15.5'
         )
         slider = explorer.wait_until_still(lambda: explorer.control("Time, s").bounding_box())
+        explorer.pause()
+        page.get_by_role("tab", name="Ride").click()
+        explorer.press("Time, s", "Home")
+        explorer.press("Time, s", "ArrowRight")
+        page.wait_for_function(
+            "() => sessionStorage.getItem('trackride-place')?.includes('\"time\": 0.01,')"
+            " && sessionStorage.getItem('trackride-front') === 'Ride'"
+        )
     lost = page.locator(".trackride-lost")
     expect(lost).to_be_visible()
     explorer.press("Speed", "ArrowRight")
@@ -36,5 +45,40 @@ def test_a_page_waits_for_its_server_and_comes_back_as_it_was(browser: Browser) 
         expect(page).to_have_title("Paper vehicle, sine · Trackride")
         expect(lost).to_be_hidden()
         explorer.wait_for_value("Speed", "now === 15.5")
+        explorer.wait_for_value("Time, s", "now === 0.01")
+        expect(explorer.button("▶ Play")).to_be_visible()
+        expect(page.get_by_role("tab", name="Ride")).to_have_attribute("aria-selected", "true")
         assert explorer.wait_until_still(lambda: explorer.control("Time, s").bounding_box()) == slider
         context.close()
+
+
+def test_each_tab_is_loaded_anew_with_its_own_parameters(browser: Browser, address: str) -> None:
+    context = new_context(browser)
+    tabs = {speed: Explorer(context.new_page()) for speed in (22, 33)}
+    for speed, explorer in tabs.items():
+        explorer.open(f"{address}/?fixedDpr=0.25")
+        explorer.box("Speed").fill(str(speed))
+        explorer.page.keyboard.press("Enter")
+        explorer.page.wait_for_function(
+            "text => sessionStorage.getItem('trackride')?.includes(text)", arg=f'"drive.speed_kmh": {speed}'
+        )
+    for speed, explorer in tabs.items():
+        explorer.page.reload()
+        expect(explorer.status).to_contain_text("real time")
+        explorer.wait_for_value("Speed", "now === value", speed)
+    context.close()
+
+
+def test_what_a_busy_page_tells_comes_one_at_a_time(at_rest: Explorer) -> None:
+    """viser sends only the first and the last of what is set within 50 ms."""
+    times = at_rest.page.evaluate(
+        """() => new Promise((done) => {
+          const times = [];
+          for (let k = 0; k < 3; k++) trackrideInTurn(() => {
+            times.push(performance.now());
+            if (times.length === 3) done(times);
+          });
+          setTimeout(() => { for (const end = performance.now() + 500; performance.now() < end;); });
+        })"""
+    )
+    assert min(after - before for before, after in pairwise(times)) > 50

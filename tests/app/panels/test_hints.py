@@ -18,6 +18,8 @@ NOT_SEEN = (
     "Study says",
     "Size",
     "At",
+    "Asked",
+    "Place",
 )  # that only the page itself uses
 
 

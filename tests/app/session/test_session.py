@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import app.session.session
+from app.runs.storage import Place, place_text
 from app.server import Explorer
 from app.session.session import VIEW_RATE
 from model.config.config import Config, load_config
@@ -300,3 +301,36 @@ def test_view_switches_reach_the_scene_on_the_view_thread(explore: Any, open_tab
     light = tab.charts()[0]["series"][1]["stroke"]
     tab.use("Dark", True)
     wait_for(lambda: view.dark and tab.charts()[0]["series"][1]["stroke"] != light)
+
+
+def test_a_tab_that_is_loaded_anew_stands_where_it_was_and_stores_where_it_goes(explore: Any, open_tab: Any) -> None:
+    place = Place(1.25, False, (0.5, -9.0, 1.0), (0.0, 0.0, 0.75))
+    explorer = explore()
+    tab = open_tab(explorer, place=place_text(place))
+    wait_for(lambda: tab.widget("Time, s")["value"] == 1.25, "the time")
+    assert "▶ Play" in tab.widget("Playback")["props"]["options"]
+    moves = {m["type"]: m for m in tab.messages if m["type"] in ("SetCameraPositionMessage", "SetCameraLookAtMessage")}
+    assert tuple(moves["SetCameraPositionMessage"]["position"]) == place.position
+    assert tuple(moves["SetCameraLookAtMessage"]["look_at"]) == place.look_at
+    tab.use("Time, s", 1.5)
+    wait_for(lambda: "&quot;time&quot;: 1.5," in tab.html("trackride-place").replace('"', "&quot;"), "the new place")
+
+
+def test_an_obstacle_that_the_user_is_led_back_to_is_marked_until_the_run_plays(explore: Any, open_tab: Any) -> None:
+    def drive_past(config: Config, **how: Any) -> Trajectory:
+        run = make_run(config, samples=401)
+        run.q[:, :, 0] += config.drive.speed_kmh / 3.6 * run.t[:, None]
+        return run
+
+    explorer = explore(load_config("half_round"), "half_round", run=drive_past)
+    tab: Tab = open_tab(explorer)
+    wait_for(lambda: tab.shows_run(1))
+    view: FakeView = explorer.sessions[0]._window.view
+    tab.use("Time, s", 3.9)
+    wait_for(lambda: view.times[-1] == 3.9)
+    assert not view.marks_obstacle
+    tab.use("Road type", "step")
+    wait_for(lambda: view.marks_obstacle, "the mark")
+    assert view.times[-1] < 3.0
+    tab.press("Play or pause")
+    wait_for(lambda: not view.marks_obstacle, "the mark to go")

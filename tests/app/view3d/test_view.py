@@ -388,3 +388,29 @@ def test_the_vehicle_stands_above_what_hides_the_foot_of_the_picture(tab: Tab, p
     moved = np.array(tab.camera.position)
     view.fit_page(900, 0.0, 1.0)
     np.testing.assert_array_equal(tab.camera.position, moved)
+
+
+def test_an_obstacle_is_marked_on_its_road_until_the_vehicle_has_passed(tab: Tab) -> None:
+    kerb = simulate(load_config("kerb").replace({"simulation.duration": 4.0}))
+    view = View3D(tab)  # type: ignore[arg-type]
+    view.mark_obstacle(True)  # before the run whose obstacle is meant
+    view.show(kerb)
+    view.draw(0.0)
+    nodes, uneven = tab.scene._handle_from_node_name, kerb.road.uneven
+    assert uneven is not None
+    assert nodes["/obstacle/name"].text == "Step"
+    ends = nodes["/obstacle/line"].points
+    assert ends[..., 0].max() == pytest.approx(uneven[1] - uneven[0], abs=1e-5)
+    at = [m.position[0] for m in tab.sent() if m.name == "/obstacle" and hasattr(m, "position")][-1]
+    assert at == pytest.approx(uneven[0] - kerb.q[0, kerb.system.chassis, 0])
+    assert nodes["/obstacle"].visible
+    last = kerb.q[:, kerb.system.wheel, 0].min(axis=1) - kerb.system.r
+    passed = float(kerb.t[int((last > uneven[1]).argmax())])
+    assert passed > 0.0
+    view.draw(passed + 0.05)
+    assert not nodes["/obstacle"].visible
+    view.mark_obstacle(False)
+    assert "/obstacle" not in tab.nodes()
+    view.mark_obstacle(True)
+    view.show(run())  # waves all along
+    assert "/obstacle" not in tab.nodes()
