@@ -11,7 +11,7 @@ if (!customElements.get('trackride-address')) {
       last = step;
     }
   });
-  addEventListener('hashchange', () => {
+  window.addEventListener('hashchange', () => {
     if (location.hash.length > 1) trackrideAsk('link', location.hash.slice(1));
   });
   customElements.define('trackride-copy', class extends HTMLElement {

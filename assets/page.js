@@ -258,7 +258,7 @@ if (!document.body.dataset.trackride) {
       if (of === `${innerWidth} ${innerHeight}`) root.dataset.trackrideStands = '';
     }
   });
-  addEventListener('resize', tellSize);
+  window.addEventListener('resize', tellSize);
   setInterval(tellSize, 250);  // a seam that is moved changes the view only
   tellSize();
   customElements.define('trackride-title', class extends HTMLElement {

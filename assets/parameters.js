@@ -74,7 +74,8 @@ if (!customElements.get('trackride-rows')) {
   });
   customElements.define('trackride-front', class extends HTMLElement {
     connectedCallback() {
-      [...document.querySelectorAll('[role="tab"]')].find((tab) => tab.textContent === this.getAttribute('of'))?.click();
+      const tab = [...document.querySelectorAll('[role="tab"]')].find((tab) => tab.textContent === this.getAttribute('of'));
+      tab?.dispatchEvent(new KeyboardEvent('keydown', {key: 'Enter', bubbles: true}));  // docked ones heed no click()
     }
   });
   setInterval(draw, 500);  // viser makes rows anew

@@ -330,7 +330,7 @@ if (!window.trackridePlots) {
     met.add(chart);
     const around = chart.root.closest('.uplot-container')?.parentElement;
     around?.setAttribute('data-trackride', 'chart');
-    around?.parentElement.setAttribute('data-trackride', 'charts');  // plots.css puts them side by side there
+    around?.parentElement?.setAttribute('data-trackride', 'charts');  // plots.css puts them side by side there
     chart.root.classList.add(chart.cursor.sync.key);
     chart.root.querySelector('.u-title').title =
       'Drag across the plot to zoom in (or Ctrl and the wheel), double-click to see all; click to go to a time';

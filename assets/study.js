@@ -812,7 +812,7 @@ if (!window.trackrideStudy) {
   });
   new MutationObserver(() => { draw(); strips(); }).observe(document.documentElement,
     {attributes: true, attributeFilter: ['data-mantine-color-scheme']});
-  addEventListener('resize', () => draw());
+  window.addEventListener('resize', () => draw());
   document.addEventListener('keydown', (event) => {
     if (event.key === 'Escape' && study.large) enlarge(false);
   });

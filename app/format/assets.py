@@ -6,8 +6,8 @@ from functools import cache
 from importlib import resources
 
 EXPLORER = (  # what its page needs
-    *("page.js", "page.css", "plots.js", "plots.css", "study.js", "study.css"),
-    *("wheel.css", "runs.css", "modal.css"),
+    *("head.html", "icon.svg", "page.js", "page.css", "address.js", "parameters.js", "parameters.css"),
+    *("plots.js", "plots.css", "study.js", "study.css", "runs.js", "runs.css", "wheel.css", "modal.css"),
 )
 
 

@@ -116,7 +116,7 @@ def test_bad_input_names_all_faults_and_writes_nothing(tmp_path, monkeypatch):
     vary = ("--vary", "drive.speed_kmh=10:30:5")
     assert refused() == "nothing varies: give a key and its values\n"
     assert "--figures peak_loads: there is no such figure" in refused(*vary, "--figures", "peak_loads")
-    assert "sobol:5: such a sample" in refused(*vary, "--sample", "sobol:5")
+    assert "sobol:5: such a sample" in refused("--vary", "drive.speed_kmh=10:30", "--sample", "sobol:5")
     assert "must end in .parquet or .csv" in refused(*vary, "--out", "table.txt")
     (tmp_path / "other.csv").write_text("a,b\n")
     assert "is no table of a study" in refused(*vary, "--out", "other.csv", "--resume")
@@ -128,5 +128,5 @@ def test_more_runs_than_the_disk_holds_are_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(shutil, "disk_usage", lambda folder: space(1e9, 1e9 - 3e6, 3e6))
     monkeypatch.chdir(tmp_path)
     vary = ("--vary", "drive.speed_kmh=10:30:5")
-    assert "5 runs take about 5 MB" in refused(*vary, "--keep-runs", "runs")
+    assert "5 runs take about 22 MB" in refused(*vary, "--keep-runs", "runs")
     assert "has 3 MB free: vary less, or write elsewhere" in refused("--vary", "drive.speed_kmh=10:30:9000")

@@ -24,7 +24,8 @@ def test_a_missing_one_is_named() -> None:
 
 
 def test_the_explorer_asks_for_those_that_its_panels_use() -> None:
-    sources = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "app" / "panels").glob("*.py"))
+    files = (path for part in ("panels", "web") for path in (ROOT / "app" / part).glob("*.py"))
+    sources = "".join(path.read_text(encoding="utf-8") for path in files)
     assert set(re.findall(r'asset\("([^"]+)"\)', sources)) == set(EXPLORER)
 
 
