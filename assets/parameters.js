@@ -25,13 +25,10 @@ if (!customElements.get('trackride-rows')) {
     if (!row || !place) return;
     const [key, free, first] = row, was = changes[key], name = label.textContent.split(',')[0];
     place.classList.toggle('trackride-changed', was !== undefined);
-    if (was === undefined) {
-      place.querySelector('.trackride-reset')?.remove();
-    } else {
-      const reset = button(place, 'reset');
-      say(reset, '↺', `${name} back to ${was}`);
-      reset.onclick = () => trackrideAsk('reset', key);
-    }
+    const reset = button(place, 'reset');  // always there, so that nothing appears in a drag
+    reset.style.visibility = was === undefined ? 'hidden' : '';
+    say(reset, '↺', `${name} back to ${was}`);
+    reset.onclick = () => trackrideAsk('reset', key);
     if (!free) return;
     const star = button(place, 'star');
     say(star, first ? '★' : '☆', first ? `${name} no longer among the first sliders` : `${name} among the first sliders, too`);
@@ -60,8 +57,7 @@ if (!customElements.get('trackride-rows')) {
       const row = document.querySelector(`label[for="${this.getAttribute('box')}"]`)?.closest('div[style*="flex-shrink"]')?.parentElement;
       if (!row) return;
       for (let part = row.parentElement; part; part = part.parentElement) {
-        const head = part.matches('.mantine-Paper-root') && part.firstElementChild;
-        if (head && head.querySelector(':scope > svg[class*="chevron-down"]')) head.click();
+        if (part.dataset.trackrideFolder === 'closed') part.querySelector(':scope > [role="button"]')?.click();
       }
       const input = row.querySelector('[role="slider"], input, textarea, button');
       setTimeout(() => {  // once the folder is open

@@ -537,17 +537,6 @@ if (!window.trackridePlots) {
     }
   });
 
-  // Tabs that were seen before the page was loaded anew come to the front again, once they are there. viser may lay them
-  // out once more after that: it is tried until it holds, but not for ever, since one place shows one tab only
-  let back = sessionStorage.getItem('trackride-front')?.split(','), tries = 8;
-  const bringBack = () => {
-    const all = [...document.querySelectorAll('[role="tab"]')];
-    const found = back?.map((name) => all.find((tab) => tab.title === name));
-    if (!found?.every((tab) => tab)) return;
-    const behind = found.filter((tab) => tab.ariaSelected !== 'true');
-    behind.forEach((tab) => tab.dispatchEvent(new KeyboardEvent('keydown', {key: 'Enter', bubbles: true})));
-    if (!behind.length || --tries < 0) back = null;
-  };
   let front = '';  // names of the tabs that are seen
   const tell = () => {  // in the hidden box beside the page's keys, which is not there while that panel is put away
     const box = document.querySelector('[data-trackride="page"] + div + div input');
@@ -560,11 +549,10 @@ if (!window.trackridePlots) {
   const tabs = new ResizeObserver(() => {  // a tab behind is 0 px wide
     const seen = [...document.querySelectorAll('trackride-tab')].filter((tab) => tab.offsetWidth);
     front = seen.map((tab) => tab.getAttribute('name')).join();
-    if (!back && front) sessionStorage.setItem('trackride-front', front);
     tell();
   });
   customElements.define('trackride-tab', class extends HTMLElement {
     connectedCallback() { tabs.observe(this); }
   });
-  setInterval(() => { window.trackridePlots(); bringBack(); tell(); }, 250);
+  setInterval(() => { window.trackridePlots(); tell(); }, 250);
 }

@@ -148,7 +148,7 @@ class Tables:
             for number, (parameter, value) in enumerate(part):
                 self._next(BAND if number % 2 == 0 else "", x, width)
                 self._cell(x + 0.02, _named(parameter))
-                self._cell(x + width - 0.02, plain(value_text(parameter, value), 14), ha="right")
+                self._cell(x + width - 0.02, plain(value_text(parameter, value), 11), ha="right")
 
 
 def telling(names: list[str], rows: dict[tuple[str, str], Row]) -> list[str]:

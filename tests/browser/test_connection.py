@@ -27,13 +27,9 @@ def test_a_page_waits_for_its_server_and_comes_back_as_it_was(browser: Browser) 
         )
         slider = explorer.wait_until_still(lambda: explorer.control("Time, s").bounding_box())
         explorer.pause()
-        page.get_by_role("tab", name="Ride").click()
         explorer.press("Time, s", "Home")
         explorer.press("Time, s", "ArrowRight")
-        page.wait_for_function(
-            "() => sessionStorage.getItem('trackride-place')?.includes('\"time\": 0.01,')"
-            " && sessionStorage.getItem('trackride-front') === 'Ride'"
-        )
+        page.wait_for_function("() => sessionStorage.getItem('trackride-place')?.includes('\"time\": 0.01,')")
     lost = page.locator(".trackride-lost")
     expect(lost).to_be_visible()
     explorer.press("Speed", "ArrowRight")
@@ -47,7 +43,6 @@ def test_a_page_waits_for_its_server_and_comes_back_as_it_was(browser: Browser) 
         explorer.wait_for_value("Speed", "now === 15.5")
         explorer.wait_for_value("Time, s", "now === 0.01")
         expect(explorer.button("▶ Play")).to_be_visible()
-        expect(page.get_by_role("tab", name="Ride")).to_have_attribute("aria-selected", "true")
         assert explorer.wait_until_still(lambda: explorer.control("Time, s").bounding_box()) == slider
         context.close()
 
