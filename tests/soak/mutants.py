@@ -1,6 +1,6 @@
 """Small faults put into force laws, checks and figures, one at a time: the tests must notice each.
 
-`python -m tests.soak.mutants` tries all in a copy of the tree and writes what came of it to MUTANTS.md. A mutant is
+`python -m tests.soak.mutants` tries all in a copy of the tree and writes what came of it to MUTANTS.txt. A mutant is
 tried on the tests of its own file: LAWS run as plain Python, since compiling them takes a minute each time.
 """
 
@@ -19,7 +19,7 @@ from pathlib import Path
 from time import perf_counter
 
 ROOT = Path(__file__).parents[2]
-REPORT = Path(__file__).with_name("MUTANTS.md")
+REPORT = Path(__file__).with_name("MUTANTS.txt")
 LEFT_OUT = shutil.ignore_patterns(".git", ".venv", "build", "__pycache__", "*.egg-info")
 LONGEST = 900.0  # s for the tests of one mutant
 
