@@ -3,6 +3,7 @@
 if (!customElements.get('trackride-rows')) {
   const KEPT = 'trackride-first';
   let rows = {}, changes = {};
+  let sought;  // count of the last search: viser may put its element into the page twice
   const kept = () => {
     try { return JSON.parse(localStorage.getItem(KEPT)) ?? []; } catch { return []; }
   };
@@ -55,10 +56,12 @@ if (!customElements.get('trackride-rows')) {
   customElements.define('trackride-sought', class extends HTMLElement {
     connectedCallback() {
       const row = document.querySelector(`label[for="${this.getAttribute('box')}"]`)?.closest('div[style*="flex-shrink"]')?.parentElement;
-      if (!row) return;
-      for (let part = row.parentElement; part; part = part.parentElement) {
-        if (part.dataset.trackrideFolder === 'closed') part.querySelector(':scope > [role="button"]')?.click();
-      }
+      if (!row || this.getAttribute('count') === sought) return;
+      sought = this.getAttribute('count');
+      setTimeout(() => {  // not now: React, which puts this in, heeds no click meanwhile
+        for (let part = row.parentElement; part; part = part.parentElement)
+          if (part.dataset.trackrideFolder === 'closed') part.querySelector(':scope > [role="button"]')?.click();
+      });
       const input = row.querySelector('[role="slider"], input, textarea, button');
       setTimeout(() => {  // once the folder is open
         row.scrollIntoView({block: 'center'});
@@ -71,7 +74,7 @@ if (!customElements.get('trackride-rows')) {
   customElements.define('trackride-front', class extends HTMLElement {
     connectedCallback() {
       const tab = [...document.querySelectorAll('[role="tab"]')].find((tab) => tab.textContent === this.getAttribute('of'));
-      tab?.dispatchEvent(new KeyboardEvent('keydown', {key: 'Enter', bubbles: true}));  // docked ones heed no click()
+      setTimeout(() => tab?.dispatchEvent(new KeyboardEvent('keydown', {key: 'Enter', bubbles: true})));  // as above
     }
   });
   setInterval(draw, 500);  // viser makes rows anew
