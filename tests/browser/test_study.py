@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Locator, expect
 
+from app.runs.study_choice import WHAT_IF
 from tests.browser.driver import FIRST_RUN, SOON, Explorer
 
 SPEED = 3  # place of its column
@@ -35,7 +36,7 @@ def test_curves_stand_there_when_the_user_rests_and_say_what_matters(study: Expl
     assert "Absorbed power" in words
     assert "W: Speed +" in words
     expect(study.page.locator("trackride-matters")).to_contain_text(": mostly speed")
-    expect(study.page.locator(".trackride-strip")).to_have_count(5)
+    expect(study.page.locator(".trackride-strip")).to_have_count(len(WHAT_IF))
 
 
 def test_a_click_on_a_curve_moves_its_slider_and_undo_moves_it_back(study: Explorer) -> None:
@@ -53,7 +54,7 @@ def test_a_click_on_a_curve_moves_its_slider_and_undo_moves_it_back(study: Explo
 
 
 def test_a_slider_that_moves_gives_it_up(study: Explorer) -> None:
-    """No curve of a value that was passed on the way."""
+    """No curve of a value that was passed on the way; those of the first value may still become finer."""
     page = study.page
     page.evaluate("""() => {
       window.seen = new Set();
@@ -70,7 +71,7 @@ def test_a_slider_that_moves_gives_it_up(study: Explorer) -> None:
         page.wait_for_timeout(60)
     study.wait_for_value("Speed", "now === value", start + 6.0)
     page.wait_for_function(f"{DONE}[{SPEED}].now === {start + 6.0:g}", timeout=FIRST_RUN)
-    assert page.evaluate("[...window.seen]") == [start + 6.0]
+    assert set(page.evaluate("[...window.seen]")) - {start} == {start + 6.0}
 
 
 def test_the_strips_can_be_switched_off(study: Explorer) -> None:
@@ -79,7 +80,7 @@ def test_the_strips_can_be_switched_off(study: Explorer) -> None:
     expect(study.page.locator(".trackride-strip")).to_have_count(0)
     expect(study.page.locator("trackride-matters")).not_to_contain_text("mostly")
     box.check()
-    expect(study.page.locator(".trackride-strip")).to_have_count(5)
+    expect(study.page.locator(".trackride-strip")).to_have_count(len(WHAT_IF))
 
 
 def test_it_opens_large_and_closes_again(study: Explorer) -> None:
