@@ -9,16 +9,17 @@ if (!window.trackrideStudy) {
   const waiting = new Map();  // kind -> content that is still to be told: the newest counts
   let count = 0;
   const inTurn = (act) => (window.trackrideInTurn ?? setTimeout)(act);
-  const sayBox = () => {
-    let part = document.querySelector(`label[for="${study.page?.dataset.says}"]`);
+  // Hidden boxes: one in the tab, one beside the sliders. Each is there while its panel is
+  const sayBoxes = () => [...document.querySelectorAll('trackride-study, trackride-matters')].flatMap(({dataset}) => {
+    let part = document.querySelector(`label[for="${dataset.says}"]`);
     while (part && !part.querySelector('input')) part = part.parentElement;
-    return part;
-  };
+    return part ?? [];
+  });
   const tell = (kind, content) => {
     const known = waiting.has(kind);
     waiting.set(kind, content);
     if (!known) inTurn(() => {
-      const box = sayBox()?.querySelector('input'), newest = waiting.get(kind);
+      const box = sayBoxes()[0]?.querySelector('input'), newest = waiting.get(kind);
       waiting.delete(kind);
       if (!box) return;
       const text = JSON.stringify({kind, content: newest, count: ++count});
@@ -777,11 +778,31 @@ if (!window.trackrideStudy) {
     if (kind === study.choice.view) draw();
     if (kind === 'profiler') { strips(); matters(); }
   };
+  const taken = {};  // text of the newest data of each kind: the profiler's stand in both panels
   customElements.define('trackride-study-data', class extends HTMLElement {
-    connectedCallback() { study.take(this.getAttribute('of'), JSON.parse(this.getAttribute('at'))); }
+    connectedCallback() {
+      const kind = this.getAttribute('of'), text = this.getAttribute('at');
+      if (taken[kind] !== text) study.take(kind, JSON.parse(taken[kind] = text));
+    }
   });
+  const hideBoxes = () => sayBoxes().forEach((box) => { box.style.display = 'none'; });
+  const hide = () => {
+    hideBoxes();
+    requestAnimationFrame(hideBoxes);
+  };
   customElements.define('trackride-matters', class extends HTMLElement {
-    connectedCallback() { matters(); }
+    connectedCallback() {
+      study.sliders = JSON.parse(this.dataset.sliders);
+      study.offer = JSON.parse(this.dataset.offer);
+      let kept = {};
+      try { kept = JSON.parse(localStorage.getItem(KEPT)) ?? {}; } catch { /* not ours */ }
+      study.choice = {...study.offer.choice, ...kept, fit: 0};
+      if (!study.views[study.choice.view]) study.choice.view = 'profiler';
+      hide();
+      tell('choice', study.choice);
+      matters();
+      draw();
+    }
   });
   let size = '';
   const resized = new ResizeObserver(() => {
@@ -792,21 +813,8 @@ if (!window.trackrideStudy) {
     connectedCallback() {
       study.page = this;
       this.popover = 'manual';
-      study.sliders = JSON.parse(this.dataset.sliders);
-      study.offer = JSON.parse(this.dataset.offer);
-      let kept = {};
-      try { kept = JSON.parse(localStorage.getItem(KEPT)) ?? {}; } catch { /* not ours */ }
-      study.choice = {...study.offer.choice, ...kept, fit: 0};
-      if (!study.views[study.choice.view]) study.choice.view = 'profiler';
-      const hide = () => {
-        const box = sayBox();
-        if (box) box.style.display = 'none';
-      };
       hide();
-      requestAnimationFrame(hide);
-      tell('choice', study.choice);
       resized.observe(this);
-      matters();
       draw();
     }
   });

@@ -15,41 +15,51 @@ from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.panels.parameter_panel import ParameterPanel
 from app.plots.study_data import Data, FigureUnit
-from app.runs.study_choice import VARIABLE, VIEWS, StudyChoice, choice_from, figure_names
+from app.runs.study_choice import PROFILER, VARIABLE, VIEWS, StudyChoice, choice_from, figure_names
 from model.config.parameters import PARAMETER, PARAMETERS
 
 SAYS = "Study says"  # label of the box by which the page tells something; nobody sees it
 
 
 class StudyPanel:
-    """Fills a container (a tab) of `gui`."""
+    """Fills a container (a tab) of `gui`, and the place below the sliders.
+
+    viser puts in what a tab holds only while it is in front. What the sliders need stands beside them, and so does
+    another hidden box: whichever of both panels is open, the page can tell something.
+    """
 
     def __init__(self, gui: viser.GuiApi, container: Any, controls: ParameterPanel, actions: Actions) -> None:
         self._actions = actions
         with container:
             page = gui.add_html("")
-            says: Any = gui.add_text(SAYS, "")
+            says = self._add_box(gui)
             self._data = {view: gui.add_html("") for view in VIEWS}
+        self._strips = gui.add_html("")
         offer = {
             "choice": StudyChoice().__dict__,
             "figures": [FigureUnit(name, KILONEWTON).data for name in figure_names()],
             "keys": [[p.key, p.label, p.group] for p in PARAMETERS if p.key in VARIABLE],
         }
-        study = element(
-            "trackride-study",
-            data_says=says._impl.uuid,
+        page.content = str(element("trackride-study", data_says=says))
+        matters = element(
+            "trackride-matters",
+            data_says=self._add_box(gui),
             data_sliders=json.dumps(controls.sliders),
             data_offer=json.dumps(offer, ensure_ascii=False),
         )
-        page.content = str(joined((running(asset("study.js")), style(asset("study.css")), study)))
-        controls.matters.content = str(element("trackride-matters"))
-        says.on_update(by_user(lambda event: self._take(event.target.value), actions.fail))
+        controls.matters.content = str(joined((running(asset("study.js")), style(asset("study.css")), matters)))
+
+    def _add_box(self, gui: viser.GuiApi) -> str:
+        """A box by which the page tells something: viser's name of it."""
+        box: Any = gui.add_text(SAYS, "")
+        box.on_update(by_user(lambda event: self._take(event.target.value), self._actions.fail))
+        return box._impl.uuid
 
     def show(self, kind: str, data: Data) -> None:
         """Draw this; kind: one of VIEWS."""
-        self._data[kind].content = str(
-            element("trackride-study-data", of=kind, at=json.dumps(data, ensure_ascii=False, allow_nan=False))
-        )
+        told = element("trackride-study-data", of=kind, at=json.dumps(data, ensure_ascii=False, allow_nan=False))
+        for place in (self._data[kind], *((self._strips,) if kind == PROFILER else ())):
+            place.content = str(told)
 
     def _take(self, text: str) -> None:
         """What the page tells: a choice, or the value of a parameter, as shown."""
