@@ -225,7 +225,8 @@ def paper(
 
 
 def _report(trajectory: Trajectory) -> None:
-    from model.analysis.ride import Summary, warnings
+    from model.analysis.ride import Summary
+    from model.analysis.ride_warnings import warnings
 
     of = Summary(trajectory)
     output.print(_load_table(of))

@@ -12,7 +12,7 @@ from app.format.markup import element, joined, style
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.panels.page_layout import PageLayout
-from model.analysis.ride import WheelState
+from model.analysis.wheel_contact import WheelState
 
 HEIGHT, GAP = 152, 14  # px of usual type (page_layout.py); px from the view's upper edge
 ABSENT = "–"

@@ -25,7 +25,7 @@ from app.tabs.trust import balances, drift, work
 from model.analysis.comfort import Comfort, ride_comfort
 from model.analysis.figures import WHEEL_FIGURES, comparison
 from model.analysis.modes import Modes, vehicle_modes
-from model.analysis.ride import warnings
+from model.analysis.ride_warnings import warnings
 from model.analysis.signals import WHOLE, window
 from model.analysis.spectrum import excitation
 from model.config.config import Config, dump_config

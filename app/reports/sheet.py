@@ -18,7 +18,7 @@ from app.reports.drawings import AxesStyle, file_of, mark_peaks, plain_axes, sta
 from app.reports.sheet_page import ALARM, GREY, HEIGHT, INK, LOOK, MARGIN, WIDTH, Sheet, plain
 from app.reports.sheet_tables import Tables
 from app.reports.side_view import draw_side_view, highest_load
-from model.analysis.ride import warnings
+from model.analysis.ride_warnings import warnings
 from model.analysis.signals import window
 from model.simulation.trajectory import Trajectory, wheel_names
 

@@ -49,7 +49,7 @@ from app.runs.request import Driven, Failed, Finished, Refused, Request
 from app.runs.storage import Place
 from app.tabs.road_profile import RoadAhead
 from app.view3d.mode_animation import PERIOD, ModeShow
-from model.analysis.ride import WheelState
+from model.analysis.wheel_contact import WheelState
 from model.config.config import Config, ConfigError
 from model.config.parameters import PARAMETER
 from model.config.validation import shorten

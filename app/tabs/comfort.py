@@ -10,7 +10,7 @@ from app.format.markup import Content, Html, cell, element, page, table, words_h
 from app.tabs.comparison import cells
 from model.analysis.comfort import MOST_CREST, POWER_LIMIT, Comfort, ride_comfort
 from model.analysis.figures import DOSE, POWER, SHOCK, TRANSIENT, WEIGHTED, Row, percent
-from model.analysis.ride import figure_warnings
+from model.analysis.ride_warnings import figure_warnings
 from model.analysis.signals import CENTRE_OF_MASS, same_window, seat, window
 from model.simulation.trajectory import Trajectory
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from app.format.load_unit import load_unit
 from app.format.markup import Content, Html, element, joined, page, table, words_html
 from model.analysis.energy import EnergyBalance, energy_balance, load_balance
-from model.analysis.ride import RideWarning, motion_warnings, warnings
+from model.analysis.ride_warnings import RideWarning, motion_warnings, warnings
 from model.config.parameters import number_text
 from model.paper.errata import ERRATA, Erratum
 from model.road.road import Road

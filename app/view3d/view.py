@@ -18,7 +18,7 @@ from app.view3d.nodes import RoadNodes, Surroundings, VehicleNodes
 from app.view3d.obstacle_mark import ObstacleMark
 from app.view3d.overlays import SWITCHES, Overlays
 from app.view3d.snapshot import Scene, build_scene, live_scene
-from model.analysis.ride import WheelState, wheel_state
+from model.analysis.wheel_contact import WheelState, wheel_state
 from model.road.road import Road
 from model.simulation.trajectory import Trajectory
 

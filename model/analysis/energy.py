@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from model.analysis.ride import contact_motion
+from model.analysis.wheel_contact import contact_motion
 from model.dynamics.ground import losses, pressed, shear_energy
 from model.dynamics.suspension import dissipated_power, elastic
 from model.simulation.trajectory import Trajectory

@@ -17,7 +17,7 @@ from websockets.exceptions import ConnectionClosedOK
 from websockets.sync.client import connect
 
 from app.server import Explorer
-from model.analysis.ride import WheelState, wheel_state
+from model.analysis.wheel_contact import WheelState, wheel_state
 from model.config.config import Config, load_config
 from model.dynamics.vehicle import build_system
 from model.road.road import Road

@@ -20,7 +20,7 @@ from app.tabs.trust import trust_html
 from app.view3d.labels import load_text
 from model import load_config, simulate
 from model.analysis.figures import LOAD_PEAK, comparison
-from model.analysis.ride import wheel_state
+from model.analysis.wheel_contact import wheel_state
 from model.dynamics.vehicle import build_system
 from model.simulation.trajectory import Trajectory
 

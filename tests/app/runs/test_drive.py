@@ -16,7 +16,7 @@ from app.runs.drive import ALIGNED, FRAME, LONGEST_FRAME, PLOTTED, Driver, Pace,
 from app.runs.playback import Playback
 from app.runs.request import Driven, Failed, Finished, Refused, Request
 from app.runs.runner import Runner
-from model.analysis.ride import penetration
+from model.analysis.wheel_contact import penetration
 from model.config.config import Config, load_config
 from model.dynamics.equilibrium import NoEquilibriumError
 from model.road.road import Road

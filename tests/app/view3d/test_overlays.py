@@ -18,7 +18,8 @@ from app.view3d.overlays import IN_AIR, ring_looks, scale_bar, static_ticks, tra
 from app.view3d.snapshot import Scene, build_scene, live_scene
 from app.view3d.view import View3D
 from model import Trajectory, load_config, simulate
-from model.analysis.ride import suspension_travel, wheel_state
+from model.analysis.ride import suspension_travel
+from model.analysis.wheel_contact import wheel_state
 from model.simulation.drive import REBASE, LiveDrive
 from tests.app.view3d.test_view import Tab, drawn, tab
 

@@ -78,7 +78,7 @@ def test_longer_waves_are_added_to_the_same_road():
 
 @pytest.mark.parametrize(("speed", "low", "high"), [(20, 1.0, 1.2), (60, 1.15, 1.45), (100, 1.6, 2.3)])
 def test_at_speed_the_hull_pitches_on_longer_waves_too(speed, low, high):
-    """Pitch, rms, on waves up to 90 m beside that on waves up to 20 m: hence the warning (model/analysis/ride.py)."""
+    """Pitch, rms, on waves up to 90 m beside that on waves up to 20 m: hence ride_warnings.py."""
     fast = RANDOM.replace({
         "road.roughness_class": "B", "road.length": 1000, "drive.speed_kmh": speed, "simulation.duration": 30,
         "simulation.output_rate": 50, "simulation.rtol": 1e-3,

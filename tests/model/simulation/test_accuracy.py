@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from model.analysis.ride import motion_warnings
+from model.analysis.ride_warnings import motion_warnings
 from model.config.config import Config, load_config
 from model.simulation.accuracy import APART_ALLOWED, APART_NOTED, ENERGY_ALLOWED, advice, exacter
 from model.simulation.drive import LiveDrive

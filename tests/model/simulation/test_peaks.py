@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from model import Trajectory, load_config, simulate
-from model.analysis.ride import penetration
+from model.analysis.wheel_contact import penetration
 from model.config.config import preset_names
 from model.simulation.accuracy import ENERGY_NOTED
 from model.simulation.drive import LiveDrive
