@@ -150,7 +150,7 @@ def run(
 def show(config: ConfigArgument = "paper", changes: SetOption = None) -> None:
     """Print the whole of a configuration, defaults included, as YAML."""
     chosen = configuration(config, changes)
-    from model.config.config import dump_config
+    from model.config.config_files import dump_config
 
     sys.stdout.write(dump_config(chosen))
     sys.stdout.flush()
@@ -195,7 +195,7 @@ def paper(
     check_folder(out)
     from app.reports.paper.links import record_texts
     from app.reports.paper.page import paper_files
-    from model.config.config import load_config
+    from model.config.config_files import load_config
     from model.files import write_whole
     from model.paper.links import study_links
     from model.paper.study import StudyError, study_paper

@@ -27,7 +27,8 @@ from app.format.assets import check_assets
 from app.session.error_log import Throttle
 from app.web.admission import MAX_TABS, Admission, Listening, OriginError
 from app.web.web_server import WebServer
-from model.config.config import Config, load_config, preset_names
+from model.config.config import Config
+from model.config.config_files import load_config, preset_names
 
 if TYPE_CHECKING:
     from app.session.session import Session

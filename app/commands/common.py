@@ -57,7 +57,8 @@ def fail(message: str, status: int = BAD_INPUT) -> NoReturn:
 
 def configuration(source: str, changes: list[str] | None) -> Config:
     """The configuration with the values of --set; leaves with all faults printed when there are any."""
-    from model.config.config import ConfigError, load_config, parse_value, read_profile
+    from model.config.config import ConfigError
+    from model.config.config_files import load_config, parse_value, read_profile
     from model.config.parameters import PARAMETER
 
     faults, values = [], {}

@@ -35,7 +35,8 @@ def limits(
     status: 0 done; 2 bad input; 3 no run came to its end; 130 interrupted, the runs kept for --resume.
     """
     bases = [configuration(config, changes) for config in configs or ["paper"]]
-    from model.config.config import ConfigError, read_profile
+    from model.config.config import ConfigError
+    from model.config.config_files import read_profile
     from model.study import limits as found
 
     measured = {}

@@ -5,7 +5,8 @@ from __future__ import annotations
 from io import BytesIO
 from typing import Any
 
-from model.config.config import SIZE_LIMIT, Config, ConfigError, Fault, ProfileRoad, parse_config
+from model.config.config import Config, ConfigError, Fault, ProfileRoad
+from model.config.config_files import SIZE_LIMIT, parse_config
 from model.config.profile_files import read_profile_file
 from model.config.profile_points import PointsError
 from model.road.road import RAMP_AHEAD

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 from typing import Any
 from urllib.parse import quote, unquote_plus
 
-from model.config.config import Config, ConfigError, Fault, SumRoad, part_values
+from model.config.config import Config, ConfigError, Fault, SumRoad
+from model.config.config_files import part_values
 from model.config.parameters import PARAMETER, PART_LIMIT, Parameter
 from model.config.validation import EXCLUSIVE, shorten
 

@@ -11,7 +11,8 @@ from app.format.assets import asset
 from app.format.markup import Html, element, joined, style
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
-from model.config.config import Config, ConfigError, dump_config
+from model.config.config import Config, ConfigError
+from model.config.config_files import dump_config
 
 
 class YamlWindow:

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from app.format.parameters import NUMBER, choice_words, shown_number
-from model.config.config import Config, FlatRoad, ProfileRoad, SimpleRoad, SumRoad, part_values
+from model.config.config import Config, FlatRoad, ProfileRoad, SimpleRoad, SumRoad
+from model.config.config_files import part_values
 from model.config.parameters import PARAMETER, ROADS, number_text
 
 ADDED = (*(kind for kind in ROADS if PARAMETER["road.position"].applies_to(kind)), "random")  # by a button

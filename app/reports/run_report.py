@@ -28,7 +28,8 @@ from model.analysis.modes import Modes, vehicle_modes
 from model.analysis.ride_warnings import warnings
 from model.analysis.signals import WHOLE, window
 from model.analysis.spectrum import excitation
-from model.config.config import Config, dump_config
+from model.config.config import Config
+from model.config.config_files import dump_config
 from model.config.parameters import GROUPS, NOTES, PARAMETER, Value
 from model.simulation.trajectory import Trajectory
 

@@ -11,7 +11,8 @@ import numpy as np
 
 from app.runs.history import RUN_COLOURS, RUNS, Kept, plain_name, run_name
 from app.runs.request import Request, first_request
-from model.config.config import Config, ConfigError, part_values
+from model.config.config import Config, ConfigError
+from model.config.config_files import part_values
 
 PRESETS = 30  # of the user's own, at most
 LONGEST = 1_000_000  # characters of a text that is looked at: more than all presets and runs take

@@ -12,7 +12,8 @@ from app.panels.view_panel import VIEWS
 from app.runs.request import Request
 from app.session.window import Window
 from app.session.workspace import Workspace
-from model.config.config import Config, ConfigError, preset_names
+from model.config.config import Config, ConfigError
+from model.config.config_files import preset_names
 
 EVERY = 0.5  # s from one address to the next in a drag: browsers take a hundred in half a minute
 TOO_LONG = "This road has too many points for a link. Send the file instead: Export, YAML."

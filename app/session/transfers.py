@@ -23,7 +23,8 @@ from app.runs.storage import State, state_from
 from app.session.background import BackgroundJob
 from app.session.window import Window
 from app.session.workspace import Workspace
-from model.config.config import Config, ConfigError, dump_config
+from model.config.config import Config, ConfigError
+from model.config.config_files import dump_config
 from model.simulation.trajectory import Trajectory
 
 AT_REST = ("figure.png", "figure.svg", "replay", "movie")  # these show one stretch of a drive and take a while to make

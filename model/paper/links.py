@@ -16,7 +16,8 @@ import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
 from model.analysis.ride import suspension_travel
-from model.config.config import Config, load_config
+from model.config.config import Config
+from model.config.config_files import load_config
 from model.dynamics.equilibrium import NoEquilibriumError
 from model.paper.study import PRELOAD_FORCE, STIFFNESS, StudyError
 from model.simulation.batch import simulate_many

@@ -15,7 +15,8 @@ import numpy as np
 
 from model.analysis.ride import imaginary_share
 from model.analysis.spectrum import amplitude_spectrum, excitation
-from model.config.config import Config, load_config
+from model.config.config import Config
+from model.config.config_files import load_config
 from model.simulation.accuracy import APART_ALLOWED
 from model.simulation.simulate import simulate
 from model.simulation.trajectory import Trajectory

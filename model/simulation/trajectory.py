@@ -12,7 +12,8 @@ from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
 
-from model.config.config import SIZE_LIMIT, Config, dump_config, parse_config
+from model.config.config import Config
+from model.config.config_files import SIZE_LIMIT, dump_config, parse_config
 from model.dynamics.vehicle import System, build_system, kinetic_energy
 from model.files import open_file, write_whole
 from model.simulation.npz import Npz, NpzError

@@ -14,7 +14,8 @@ from typing import Literal, overload
 import numpy as np
 
 from model.analysis.figures import FIGURE, FIGURES, Figure
-from model.config.config import Config, ConfigError, parse_value
+from model.config.config import Config, ConfigError
+from model.config.config_files import parse_value
 from model.config.parameters import PARAMETER, Parameter, Value, number_text
 from model.config.validation import convert, shorten, unknown_fault
 

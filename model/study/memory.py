@@ -7,7 +7,8 @@ from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
 
-from model.config.config import Config, dump_config
+from model.config.config import Config
+from model.config.config_files import dump_config
 from model.files import write_whole
 from model.simulation.batch import in_order
 from model.simulation.simulate import warm_up

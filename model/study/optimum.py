@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from model.config.config import Config, SumRoad, part_values
+from model.config.config import Config, SumRoad
+from model.config.config_files import part_values
 from model.config.parameters import PARAMETERS, Value
 from model.study.design import NUMBER, DesignError, Range, checked_figures, design
 from model.study.running import Evaluate, Job, at_once

@@ -17,7 +17,7 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from model.config.config import dump_config
+from model.config.config_files import dump_config
 from model.config.parameters import PARAMETER
 from model.files import write_whole
 from model.study.design import DesignError, Study, Values

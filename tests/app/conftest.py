@@ -18,7 +18,8 @@ from websockets.sync.client import connect
 
 from app.server import Explorer
 from model.analysis.wheel_contact import WheelState, wheel_state
-from model.config.config import Config, load_config
+from model.config.config import Config
+from model.config.config_files import load_config
 from model.dynamics.vehicle import build_system
 from model.road.road import Road
 from model.simulation.trajectory import RunStatistics, Trajectory

@@ -22,7 +22,7 @@ from app.format.markup import Html
 from app.reports import run_report
 from app.web.admission import MAX_TABS
 from model import Config, Trajectory, load_config
-from model.config.config import parse_config, preset_names
+from model.config.config_files import parse_config, preset_names
 from model.config.parameters import PARAMETER
 
 SHORT = ("--set", "simulation.duration=1")

@@ -23,7 +23,7 @@ import app.server
 from app.commands.common import STOPPING
 from app.server import Explorer, ServerError, free_port, serve
 from app.web.admission import Listening
-from model.config.config import load_config
+from model.config.config_files import load_config
 from model.simulation.trajectory import Trajectory
 from tests.app.conftest import PATIENCE, Tab, simulate_at_once, trackride_threads, wait_for
 

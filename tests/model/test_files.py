@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from model import ConfigError, Trajectory, load_config
-from model.config.config import read_profile
+from model.config.config_files import read_profile
 from model.files import open_file, read_file, write_whole
 
 READERS = [lambda path: read_file(path, 10), open_file, Trajectory.load, load_config, read_profile]

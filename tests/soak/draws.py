@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from model.config.config import Config, load_config, preset_names
+from model.config.config import Config
+from model.config.config_files import load_config, preset_names
 from model.config.parameters import PARAMETERS, Parameter
 from model.config.validation import ConfigError
 

@@ -13,7 +13,7 @@ import numpy as np
 from app.files.uploads import configuration, profile_changes, run_from
 from app.runs.request import first_request
 from app.runs.storage import state_from, state_text
-from model.config.config import dump_config, load_config, preset_names
+from model.config.config_files import dump_config, load_config, preset_names
 from model.config.validation import ConfigError
 from model.simulation.simulate import simulate
 from model.simulation.trajectory import Trajectory

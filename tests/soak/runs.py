@@ -8,7 +8,7 @@ from time import perf_counter
 
 import numpy as np
 
-from model.config.config import dump_config, parse_config
+from model.config.config_files import dump_config, parse_config
 from model.config.validation import ConfigError
 from model.dynamics.equilibrium import NoEquilibriumError
 from model.simulation.simulate import simulate, warm_up

@@ -15,7 +15,8 @@ from app.format.markup import Content, Html, element
 from app.reports.drawings import SMALL, Drawing, Look
 from app.reports.html_page import document, picture
 from model.analysis.figures import FIGURE
-from model.config.config import Config, dump_config
+from model.config.config import Config
+from model.config.config_files import dump_config
 from model.config.parameters import PARAMETER
 
 NAME = 21  # characters in a line of a dotted name in the terminal: a parameter's longest part

@@ -12,7 +12,8 @@ from app.format.markup import element
 from app.reports.drawings import WIDTH, Drawing, Look, panels, plain_axes
 from app.reports.html_page import wide_table
 from app.reports.studies.common import csv_bytes, key_label, legend, result_files, terminal_table
-from model.config.config import Config, dump_config
+from model.config.config import Config
+from model.config.config_files import dump_config
 from model.config.parameters import number_text
 from model.study.design import Range
 from model.study.fit import Estimate, Fit

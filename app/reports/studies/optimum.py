@@ -21,7 +21,8 @@ from app.reports.studies.common import (
     result_files,
     terminal_table,
 )
-from model.config.config import Config, dump_config
+from model.config.config import Config
+from model.config.config_files import dump_config
 from model.config.parameters import number_text
 from model.study.design import Range
 from model.study.optimum import Optimum, Solution

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from app import cli
 from model import load_config
-from model.config.config import dump_config
+from model.config.config_files import dump_config
 from model.study import limits as found
 from model.study.limits import AT_ONCE, GRIEF, NEVER, Ground, half_round_grounds, iso_grounds, limits, profile_grounds
 from model.study.running import Outcome

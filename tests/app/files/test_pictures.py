@@ -13,7 +13,7 @@ from PIL import Image
 
 import app.files.pictures
 from app.files.pictures import NoPictureError, framed, movie_frames, take_picture
-from model.config.config import load_config
+from model.config.config_files import load_config
 from tests.app.conftest import Tab, trackride_threads, wait_for
 
 PAPER = load_config("paper")

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from app.files.uploads import configuration, run_from
-from model.config.config import SIZE_LIMIT, ConfigError
+from model.config.config import ConfigError
+from model.config.config_files import SIZE_LIMIT
 from tests.app.conftest import make_run
 
 

@@ -6,7 +6,7 @@ import shlex
 
 from app.commands.common import configuration
 from app.format.command_line import Source
-from model.config.config import load_config, preset_names
+from model.config.config_files import load_config, preset_names
 
 PRESETS = {name: load_config(name) for name in preset_names()}
 

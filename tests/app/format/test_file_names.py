@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from app.format.file_names import NAME_LIMIT, file_name
-from model.config.config import load_config
+from model.config.config_files import load_config
 
 PAPER = load_config("paper")
 

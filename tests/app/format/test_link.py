@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from app.format.link import READABLE, Link, link_from, link_text, nearest_preset
-from model.config.config import Config, ConfigError, load_config, preset_names
+from model.config.config import Config, ConfigError
+from model.config.config_files import load_config, preset_names
 
 PRESETS = {name: load_config(name) for name in preset_names()}
 VIEWS = ("side", "front")

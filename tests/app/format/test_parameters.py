@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 
 from app.format.parameters import allowed, file_number, file_value, hint, refusal, shown_label, shown_number, shown_text
-from model.config.config import ConfigError, load_config
+from model.config.config import ConfigError
+from model.config.config_files import load_config
 from model.config.parameters import GROUPS, NOTES, PARAMETER, PARAMETERS
 from tests.app.conftest import as_typed
 

@@ -11,7 +11,8 @@ import viser
 
 from app.panels.actions import Actions
 from app.panels.parameter_panel import ParameterPanel
-from model.config.config import Config, load_config
+from model.config.config import Config
+from model.config.config_files import load_config
 from model.config.parameters import NOTES, PARAMETER, PARAMETERS
 from tests.app.conftest import as_typed
 

@@ -14,7 +14,7 @@ import viser
 from app.panels.palette import add_palette
 from app.panels.parameter_panel import MOST_FIRST, PINNABLE
 from app.runs.request import Request
-from model.config.config import load_config
+from model.config.config_files import load_config
 from model.config.parameters import PARAMETERS
 from tests.app.panels.test_controls import PAPER, actions, panel
 

@@ -13,7 +13,8 @@ from app.panels.road_parts import parts_from, parts_text, with_part, without_las
 from app.runs.history import run_name
 from app.runs.request import Request
 from app.tabs.road_profile import AHEAD, BEHIND, HEIGHT, WIDTH, RoadAhead, road_view, span_of
-from model.config.config import Config, ConfigError, HalfRoundRoad, RandomRoad, SineRoad, SumRoad, load_config
+from model.config.config import Config, ConfigError, HalfRoundRoad, RandomRoad, SineRoad, SumRoad
+from model.config.config_files import load_config
 from model.road.road import build_road
 from tests.app.conftest import Tab, make_run, wait_for
 from tests.app.session.test_transfers import html, upload

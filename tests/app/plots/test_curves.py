@@ -11,7 +11,7 @@ from app.format.colours import wheel_palette
 from app.plots.curves import Beside, Plot, load_plots
 from app.plots.ride import ride_plots
 from app.plots.thinning import BUCKETS, thin
-from model.config.config import load_config
+from model.config.config_files import load_config
 from model.simulation.trajectory import Trajectory
 from tests.app.conftest import make_run
 

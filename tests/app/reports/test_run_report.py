@@ -20,7 +20,7 @@ from app.reports.drawings import LIGHT_LOOK, Drawing
 from app.reports.run_report import report_page, ride_rows
 from model import load_config, simulate
 from model.analysis.ride import Summary
-from model.config.config import parse_config
+from model.config.config_files import parse_config
 from model.simulation.trajectory import Trajectory
 
 PAPER = load_config("paper")

@@ -17,7 +17,8 @@ from app.runs.playback import Playback
 from app.runs.request import Driven, Failed, Finished, Refused, Request
 from app.runs.runner import Runner
 from model.analysis.wheel_contact import penetration
-from model.config.config import Config, load_config
+from model.config.config import Config
+from model.config.config_files import load_config
 from model.dynamics.equilibrium import NoEquilibriumError
 from model.road.road import Road
 from model.simulation.drive import LiveDrive

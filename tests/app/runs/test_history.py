@@ -7,7 +7,7 @@ import pytest
 import app.runs.history
 from app.runs.history import REST, RUN_COLOURS, RUNS, Changes, Runs, differences, run_name, size
 from app.runs.request import Request
-from model.config.config import load_config
+from model.config.config_files import load_config
 from tests.app.conftest import make_run
 
 PAPER, HALF_ROUND = load_config("paper"), load_config("half_round")

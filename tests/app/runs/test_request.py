@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.runs.request import Request, first_request
-from model.config.config import load_config
+from model.config.config_files import load_config
 
 PAPER = load_config("paper")
 SPEED = "drive.speed_kmh"

@@ -11,7 +11,8 @@ import pytest
 import app.runs.runner
 from app.runs.request import Failed, Finished, Outcome, Refused, Request
 from app.runs.runner import Runner
-from model.config.config import Config, load_config
+from model.config.config import Config
+from model.config.config_files import load_config
 from model.dynamics.equilibrium import NoEquilibriumError
 from model.simulation.trajectory import Trajectory
 from tests.app.conftest import PATIENCE, make_run, simulate_at_once, wait_for

@@ -15,7 +15,7 @@ from app.panels.road_parts import ADDED, with_part
 from app.runs.history import RUN_COLOURS, RUNS, Kept, Runs
 from app.runs.request import Request
 from app.runs.storage import LONGEST, PRESETS, Place, State, place_from, place_text, state_from, state_text
-from model.config.config import load_config
+from model.config.config_files import load_config
 from tests.app.conftest import make_run
 
 PAPER, OTHER = load_config("paper"), load_config("half_round")

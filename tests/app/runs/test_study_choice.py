@@ -7,7 +7,7 @@ import json
 import pytest
 
 from app.runs.study_choice import COLUMNS, ROWS, StudyChoice, choice_from, figures_of, keys_of, variable_keys
-from model.config.config import load_config
+from model.config.config_files import load_config
 
 PAPER = load_config("paper")
 

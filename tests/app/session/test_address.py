@@ -7,7 +7,7 @@ import re
 from html import unescape
 from typing import Any
 
-from model.config.config import load_config
+from model.config.config_files import load_config
 from tests.app.conftest import Tab, wait_for
 
 SPEED, KEY = "Speed, km/h", "drive.speed_kmh"

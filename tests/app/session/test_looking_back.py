@@ -11,7 +11,7 @@ import pytest
 from app.runs.drive import Driver
 from app.tabs.trust import trust_html
 from model.analysis.ride import suspension_travel
-from model.config.config import load_config
+from model.config.config_files import load_config
 from model.simulation.simulate import simulate
 from tests.app.conftest import FakeView, Tab, wait_for
 from tests.app.runs.test_drive import Clock

@@ -14,7 +14,8 @@ import app.session.session
 from app.runs.storage import Place, place_text
 from app.server import Explorer
 from app.session.session import VIEW_RATE
-from model.config.config import Config, load_config
+from model.config.config import Config
+from model.config.config_files import load_config
 from model.simulation.trajectory import Trajectory
 from tests.app.conftest import FakeView, Tab, make_run, pass_frames, trackride_threads, wait_for
 from tests.app.runs.test_runner import Bench

@@ -14,7 +14,7 @@ from app.runs.study_choice import StudyChoice
 from app.runs.turns import COMPUTING
 from app.session.studies import REST, Studies
 from app.session.study_work import Situation
-from model.config.config import load_config
+from model.config.config_files import load_config
 from model.study.profiler import LEVELS
 from model.study.running import COMPLETE, Outcome
 from tests.app.conftest import wait_for

@@ -14,7 +14,8 @@ from app.plots.study_data import Data
 from app.runs.study_choice import LIMITS, MAP, MEASURED, PROFILER, StudyChoice
 from app.session.study_work import Means, Record, Situation, StudyWork
 from model.analysis.signals import CENTRE_OF_MASS, point_acceleration
-from model.config.config import Config, load_config
+from model.config.config import Config
+from model.config.config_files import load_config
 from model.simulation.simulate import simulate
 from model.study.running import COMPLETE, Job, Outcome
 

@@ -19,7 +19,8 @@ from app.runs.drive import Driver
 from app.runs.request import Request
 from app.runs.storage import state_text
 from app.session.transfers import AT_REST, NO_RUN, PAUSE_FIRST, STORED, Download, Transfers
-from model.config.config import Config, load_config, parse_config
+from model.config.config import Config
+from model.config.config_files import load_config, parse_config
 from model.dynamics.equilibrium import NoEquilibriumError
 from model.simulation.trajectory import Trajectory
 from tests.app.conftest import PATIENCE, Tab, make_run, simulate_at_once, wait_for

@@ -16,7 +16,8 @@ from app.runs.history import REST, Runs
 from app.runs.request import Finished, Request, first_request
 from app.runs.storage import State, state_from, state_text
 from app.session.workspace import BESIDE, CALM, COMPARE_EVERY, Workspace
-from model.config.config import Config, load_config
+from model.config.config import Config
+from model.config.config_files import load_config
 from model.simulation.trajectory import Trajectory
 from tests.app.conftest import Tab, make_run, simulate_at_once, wait_for
 from tests.app.session.conftest import FakeRunner, FakeWindow

@@ -6,7 +6,7 @@ import re
 
 from app.tabs.comparison import Other, comparison_table
 from model.analysis.figures import FIGURE, LOAD_COEFFICIENT, WHEEL_FIGURES, comparison
-from model.config.config import load_config
+from model.config.config_files import load_config
 from tests.app.conftest import make_run
 
 PAPER = load_config("paper")

@@ -11,7 +11,7 @@ from app.panels.spectrum_panel import NO_MODE
 from app.plots.spectrum import LOWEST_END
 from app.view3d.mode_animation import EXCURSION, PERIOD, ModeShow
 from model.analysis.modes import vehicle_modes
-from model.config.config import load_config
+from model.config.config_files import load_config
 from model.simulation.trajectory import Trajectory
 from tests.app.conftest import FakeView, Tab, wait_for
 

@@ -11,7 +11,7 @@ import viser
 
 from app.server import Explorer, ServerError
 from app.web.admission import Listening
-from model.config.config import load_config
+from model.config.config_files import load_config
 from tests.app.conftest import Tab, wait_for
 
 WEBSOCKET = {

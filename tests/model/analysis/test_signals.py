@@ -13,7 +13,8 @@ from model import load_config, simulate
 from model.analysis.comfort import ride_comfort
 from model.analysis.ride import Summary
 from model.analysis.signals import SHORTEST, Window, seat, window
-from model.config.config import Config, preset_names
+from model.config.config import Config
+from model.config.config_files import preset_names
 from model.paper.study import run_figures
 from model.simulation.trajectory import Trajectory
 from tests.model.support import PAPER

@@ -11,20 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from model.config.config import (
-    Config,
-    ConfigError,
-    FlatRoad,
-    RoadWheels,
-    Vehicle,
-    config_from_dict,
-    dump_config,
-    load_config,
-    parse_config,
-    parse_value,
-    preset_names,
-    preset_title,
-)
+from model.config.config import Config, ConfigError, FlatRoad, RoadWheels, Vehicle, config_from_dict
+from model.config.config_files import dump_config, load_config, parse_config, parse_value, preset_names, preset_title
 from model.config.parameters import PARAMETER, PARAMETERS, Parameter
 from model.config.validation import IMAGINARY, WHEELS
 

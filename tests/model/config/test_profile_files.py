@@ -10,7 +10,8 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from model.config.config import ConfigError, read_profile
+from model.config.config import ConfigError
+from model.config.config_files import read_profile
 from model.config.profile_files import read_profile_file
 from model.config.profile_points import POINT_LIMIT, PointsError, points, points_text
 

@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from model.config.config import Config, ConfigError, config_from_dict, dump_config, parse_config
+from model.config.config import Config, ConfigError, config_from_dict
+from model.config.config_files import dump_config, parse_config
 from model.config.parameters import PARAMETER, PARAMETERS, SECTIONS
 from model.config.validation import IMAGINARY, WHEELS
 

@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from model.config.config import ConfigError, ProfileRoad, dump_config, load_config, parse_config, read_profile
+from model.config.config import ConfigError, ProfileRoad
+from model.config.config_files import dump_config, load_config, parse_config, read_profile
 from model.config.profile_points import POINT_LIMIT, points_text
 from model.road.road import Road, build_road, profile_end, profile_start
 from model.road.shapes import DENSE, MISSED, ROUNDED, measured

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from model.config.config import ConfigError, RandomRoad, dump_config, parse_config
+from model.config.config import ConfigError, RandomRoad
+from model.config.config_files import dump_config, parse_config
 from model.road.nearest_point import HEIGHT, NEXT, NODE
 from model.road.road import Road, build_road
 from model.road.table import SAME

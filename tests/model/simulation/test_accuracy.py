@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from model.analysis.ride_warnings import motion_warnings
-from model.config.config import Config, load_config
+from model.config.config import Config
+from model.config.config_files import load_config
 from model.simulation.accuracy import APART_ALLOWED, APART_NOTED, ENERGY_ALLOWED, advice, exacter
 from model.simulation.drive import LiveDrive
 from model.simulation.simulate import simulate

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from model import ConfigError, Trajectory, simulate
-from model.config.config import dump_config
+from model.config.config_files import dump_config
 from model.simulation.npz import Npz, NpzError
 from tests.model.support import PAPER
 

@@ -9,7 +9,7 @@ import pytest
 
 from model import Trajectory, load_config, simulate
 from model.analysis.wheel_contact import penetration
-from model.config.config import preset_names
+from model.config.config_files import preset_names
 from model.simulation.accuracy import ENERGY_NOTED
 from model.simulation.drive import LiveDrive
 from model.simulation.peaks import Peaks, sampled_peaks

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from model import ConfigError, Trajectory, simulate
-from model.config.config import parse_config
+from model.config.config_files import parse_config
 from model.simulation.trajectory import wheel_names
 from tests.model.support import PAPER, WHEELS
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from model.config.config import load_config
+from model.config.config_files import load_config
 from model.study.figure_map import GRIDS, figure_maps
 from model.study.profiler import axis_of
 from model.study.running import COMPLETE, Job, Outcome
