@@ -60,7 +60,8 @@ if (!customElements.get('trackride-rows')) {
       sought = this.getAttribute('count');
       setTimeout(() => {  // not now: React, which puts this in, heeds no click meanwhile
         for (let part = row.parentElement; part; part = part.parentElement)
-          if (part.dataset.trackrideFolder === 'closed') part.querySelector(':scope > [role="button"]')?.click();
+          if (part.matches('[data-trackride-folder]'))  // what it says may be old by a quarter of a second; its arrow is not
+            part.querySelector(':scope > [role="button"]:has(> svg[class*="chevron-down"])')?.click();
       });
       const input = row.querySelector('[role="slider"], input, textarea, button');
       setTimeout(() => {  // once the folder is open

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import json
-from typing import NamedTuple
+from collections.abc import Callable
+from functools import partial
+from typing import Any, NamedTuple
 
 import viser
 
 from app.format.assets import asset
 from app.format.markup import element, joined, running, style
 from app.format.parameters import choice_words
+from app.panels.actions import Actions
+from app.panels.callbacks import by_user
 from app.panels.controls import PRECISION
 from app.panels.page_layout import PageLayout
+from app.panels.page_requests import carry_out
 from model.config.config import Config, SumRoad
 
 BRAND = (28, 108, 178)
@@ -75,6 +80,27 @@ def add_page(gui: viser.GuiApi) -> PageSigns:
     intro = element("p", INTRO, class_="trackride-intro")
     page.content = str(joined((running(asset("page.js")), intro, rules)))
     return PageSigns(in_view, in_front, night, visit, typed, size, at, asked, place, layout, store, store_place, title)
+
+
+def listen(signs: PageSigns, actions: Actions, enter: Callable[[str, str], None]) -> None:
+    """Pass on what the page tells. enter: gets viser's name of a box for numbers, and what was typed there."""
+    tells: tuple[tuple[Any, Callable[[Any], object]], ...] = (
+        (signs.in_view, actions.set_in_view),
+        (signs.in_front, lambda tabs: actions.set_in_front(frozenset(tabs.split(",")))),
+        (signs.night, actions.prefer_dark),
+        (signs.visit, actions.recollect),
+        (signs.place, actions.return_to),
+        (signs.typed, lambda typed: enter(*json.loads(typed)[:2])),
+        (signs.size, lambda size: actions.set_page_size(*json.loads(size))),
+        (signs.at, lambda at: actions.scrub(float(json.loads(at)[0]))),
+        (signs.asked, lambda asked: carry_out(asked, actions)),
+    )
+    for sign, act in tells:
+        sign.on_update(by_user(partial(_told, act), actions.fail))
+
+
+def _told(act: Callable[[Any], object], event: Any) -> None:
+    act(event.target.value)
 
 
 def store_visit(signs: PageSigns, state: str) -> None:

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any, TypeVar
-
-import numpy as np
 
 from app.runs.history import RUN_COLOURS, RUNS, Kept, plain_name, run_name
 from app.runs.request import Request, first_request
@@ -16,7 +14,6 @@ from model.config.config_files import part_values
 
 PRESETS = 30  # of the user's own, at most
 LONGEST = 1_000_000  # characters of a text that is looked at: more than all presets and runs take
-FAR = 1e6  # m: no camera is further away
 REQUEST = "wish"  # key of the request: browsers have stored it under this name
 BAD = (
     ValueError,
@@ -39,36 +36,6 @@ class State:
     runs: tuple[Kept, ...]  # without their trajectories, oldest first
     baseline: Kept | None
     dark: bool | None  # the look that was chosen; None: the browser's own
-
-
-@dataclass(frozen=True)
-class Place:
-    """Where a tab is in its run, and from where it looks."""
-
-    time: float  # s
-    playing: bool
-    position: tuple[float, ...]  # (3,) of the camera, m
-    look_at: tuple[float, ...]  # (3,) m
-
-
-def place_text(place: Place) -> str:
-    """It as JSON."""
-    return json.dumps(asdict(place))
-
-
-def place_from(text: str) -> Place | None:
-    """The place in a text, which anybody may have written; None: it says none."""
-    try:
-        place = json.loads(text)
-        time, position, look_at = (np.array(place[key], dtype=float) for key in ("time", "position", "look_at"))
-        playing = place["playing"]
-    except (*BAD, RecursionError):
-        return None
-    numbers = np.concatenate([time.ravel(), position.ravel(), look_at.ravel()])
-    shapes = time.shape, position.shape, look_at.shape
-    if shapes != ((), (3,), (3,)) or not np.all(np.abs(numbers) < FAR) or not isinstance(playing, bool):
-        return None
-    return Place(float(time), playing, tuple(position.tolist()), tuple(look_at.tolist()))
 
 
 def state_text(

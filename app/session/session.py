@@ -22,15 +22,16 @@ from app.plots.study_data import Data
 from app.runs.playback import Playback, time_to_look
 from app.runs.request import Driven, Failed, Finished, Outcome, Refused, Request, Simulate, first_request
 from app.runs.runner import Runner
-from app.runs.storage import Place, place_from, place_text
 from app.runs.study_choice import StudyChoice
+from app.runs.tab_place import TabPlace
 from app.runs.turns import SHOWING
 from app.session.address import Address
 from app.session.error_log import Seldom, kind_of
 from app.session.studies import Studies
 from app.session.study_work import Record, Situation
 from app.session.transfers import Download, Transfers
-from app.session.window import VehicleView, Window
+from app.session.vehicle_view import VehicleView
+from app.session.window import Window
 from app.session.workspace import Workspace
 from app.view3d.view import View3D
 from model.config.config import Config
@@ -47,7 +48,6 @@ DRAG_PAUSE = 0.3  # s without a new run after which a drag is over
 REFUSAL_DELAY = 0.4  # s from a bad value to its refusal if no other request comes: a drag goes on meanwhile
 SEEN_WITHIN = 2.0  # s that a background job waits for something to be drawn; then it goes on without
 IDLE_RATE = 2.0  # Hz: while nothing moves …
-PLACE_EVERY = 1.0  # s from one place that the tab stores to the next
 STAYS_AWAKE = 5.0  # s … since the user did something or a run came
 
 log = logging.getLogger("trackride")
@@ -81,9 +81,7 @@ class Session:
 
         self._presets = dict(presets)  # and the user's own, which the workspace adds
         self._good: Finished | Driven | None = None  # what is shown
-        self._return_to: Place | None = None  # where the tab was before its page was loaded anew
-        self._place: Place | None = None  # that the tab has stored
-        self._place_due = float("inf")  # when it may store another, monotonic s: not before it has told of the last
+        self._place = TabPlace()
         self._steps = 0  # to be redone, or undone when negative; under the lock
         self._errors = Seldom()
         self._wake = threading.Event()
@@ -300,11 +298,7 @@ class Session:
         self.post("large", lambda: self._window.enlarge_plots())
 
     def return_to(self, place: str) -> None:
-        def take() -> None:
-            if self._place_due == float("inf"):
-                self._return_to, self._place_due = place_from(place), 0.0
-
-        self.post("place", take)
+        self.post("place", lambda: self._place.told(place))
 
     def recollect(self, visit: str) -> None:
         self.post("visit", lambda: self._transfers.recollect(visit))
@@ -508,18 +502,15 @@ class Session:
         """Go back to where the tab was, once its run is shown again; after that let the tab store where it is."""
         if not isinstance(self._good, Finished) or not self._workspace.stands or not self._window.shows_run:
             return
-        back, self._return_to = self._return_to, None
+        back = self._place.to_return_to()
         if back is not None:
             self._window.look_from(back)
             with self._lock:
                 self._playback.scrub(back.time)
                 self._playback.playing = back.playing
                 self._stir()
-        elif now >= self._place_due:
-            place = self._window.place(self._playback)
-            if place != self._place:
-                self._place, self._place_due = place, now + PLACE_EVERY
-                self._window.store_place(place_text(place))
+        elif (news := self._place.news(self._window.place(self._playback), now)) is not None:
+            self._window.store_place(news)
 
     def _study(self, now: float, driving: bool) -> None:
         """Let studies begin or end, as it suits what the user does."""

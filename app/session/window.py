@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from time import monotonic
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import viser
@@ -16,18 +15,17 @@ from app.format.markup import element
 from app.format.parameters import choice_words, refusal
 from app.panels.actions import Actions
 from app.panels.address_bar import AddressBar
-from app.panels.callbacks import by_user
 from app.panels.configuration_windows import YamlWindow, show_faults
 from app.panels.controls import PRECISION
 from app.panels.files_panel import FilesPanel
 from app.panels.notifications import Notifications
 from app.panels.page_layout import PageLayout, page_layout
-from app.panels.page_requests import carry_out
 from app.panels.page_setup import (
     add_hints,
     add_page,
     apply_theme,
     layout_html,
+    listen,
     store_place,
     store_visit,
     title_html,
@@ -46,61 +44,18 @@ from app.plots.curves import Beside
 from app.runs.drive import DriveState
 from app.runs.playback import Playback
 from app.runs.request import Driven, Failed, Finished, Refused, Request
-from app.runs.storage import Place
+from app.runs.tab_place import Place
+from app.session.vehicle_view import VehicleView
 from app.tabs.road_profile import RoadAhead
 from app.view3d.mode_animation import PERIOD, ModeShow
-from model.analysis.wheel_contact import WheelState
 from model.config.config import Config, ConfigError
 from model.config.parameters import PARAMETER
 from model.config.validation import shorten
-from model.road.road import Road
 from model.simulation.trajectory import Trajectory, wheel_names
 
 ROAD_EVERY = 0.35  # s between two side views of the road
 FOLDERS = "View", "Export", "Import and presets"
 LAID_OUT_WITHIN = 3.0  # s in which a page tells that its panels are laid out; after that we take it that they are
-
-
-class VehicleView(Protocol):
-    """The 3-D view: app.view3d.view.View3D, or a stand-in."""
-
-    def show(self, trajectory: Trajectory) -> None: ...
-
-    def show_live(self, recent: Trajectory, road: Road) -> None: ...
-
-    def draw(self, time: float) -> None: ...
-
-    def show_ghost(self, trajectory: Trajectory | None) -> None: ...
-
-    def show_beside(self, runs: Sequence[tuple[Trajectory, str]]) -> None: ...
-
-    @property
-    def ghost_of_other_size(self) -> bool: ...
-
-    def on_pick(self, act: Callable[[int], None]) -> None: ...
-
-    def mark_wheel(self, wheel: int | None) -> None: ...
-
-    def wheel_state(self, wheel: int) -> WheelState | None: ...
-
-    def fit_page(self, height: int, covered: float, type_scale: float) -> None: ...
-
-    def write_names(self) -> None: ...
-
-    @property
-    def load_top(self) -> float | None: ...
-
-    def set_view(self, standpoint: Any) -> None: ...
-
-    def mark_obstacle(self, on: bool) -> None: ...
-
-    def set_switch(self, name: str, on: bool) -> None: ...
-
-    def set_arrow_scale(self, scale: float) -> None: ...
-
-    def show_surroundings(self, on: bool) -> None: ...
-
-    def set_dark(self, dark: bool) -> None: ...
 
 
 class Window:
@@ -140,23 +95,7 @@ class Window:
             gui.set_panel_label("Trackride")
             gui.main_panel.dock_left()
             self._signs = signs = add_page(gui)
-            signs.in_view.on_update(by_user(lambda event: actions.set_in_view(event.target.value), actions.fail))
-            signs.in_front.on_update(
-                by_user(lambda event: actions.set_in_front(frozenset(event.target.value.split(","))), actions.fail)
-            )
-            signs.night.on_update(by_user(lambda event: actions.prefer_dark(event.target.value), actions.fail))
-            signs.visit.on_update(by_user(lambda event: actions.recollect(event.target.value), actions.fail))
-            signs.place.on_update(by_user(lambda event: actions.return_to(event.target.value), actions.fail))
-            signs.typed.on_update(
-                by_user(lambda event: self._controls.enter(*json.loads(event.target.value)[:2]), actions.fail)
-            )
-            signs.size.on_update(
-                by_user(lambda event: actions.set_page_size(*json.loads(event.target.value)), actions.fail)
-            )
-            signs.at.on_update(
-                by_user(lambda event: actions.scrub(float(json.loads(event.target.value)[0])), actions.fail)
-            )
-            signs.asked.on_update(by_user(lambda event: carry_out(event.target.value, actions), actions.fail))
+            listen(signs, actions, lambda *typed: self._controls.enter(*typed))
             self.address = AddressBar(gui)
             self._opened, self._tabs_opened = gui.add_html(""), 0
             self._controls = ParameterPanel(gui, presets, preset, config, actions)

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from app.panels.road_parts import ADDED, with_part
 from app.runs.history import RUN_COLOURS, RUNS, Kept, Runs
 from app.runs.request import Request
-from app.runs.storage import LONGEST, PRESETS, Place, State, place_from, place_text, state_from, state_text
+from app.runs.storage import LONGEST, PRESETS, State, state_from, state_text
 from model.config.config_files import load_config
 from tests.app.conftest import make_run
 
@@ -100,31 +100,3 @@ def test_no_value_put_anywhere_does_harm(data: st.DataObject) -> None:
     assert all(kept.colour in RUN_COLOURS and kept.request.config() == kept.config for kept in found.runs)
     if found.request is not None:
         state_text(PAPER, found.request, found.presets, found.runs, found.baseline, found.dark)
-
-
-def test_a_place_comes_back() -> None:
-    place = Place(1.25, False, (0.5, -9.0, 1.0), (0.0, 0.0, 0.75))
-    assert place_from(place_text(place)) == place
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"time": "soon"},
-        {"time": float("nan")},
-        {"position": [0, 0]},
-        {"position": None},
-        {"look_at": [0, 0, 1e300]},
-        {"look_at": [0, 0, [1]]},
-        {"playing": 1},
-    ],
-)
-def test_what_is_no_place_is_none(changes: dict[str, Any]) -> None:
-    place = {"time": 0.0, "playing": True, "position": [0, 0, 1], "look_at": [0, 0, 0]}
-    assert place_from(json.dumps(place)) is not None
-    assert place_from(json.dumps(place | changes)) is None
-
-
-@pytest.mark.parametrize("text", ["", "null", "[]", "[" * 100_000])
-def test_a_text_that_says_no_place_is_none(text: str) -> None:
-    assert place_from(text) is None

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import app.session.session
-from app.runs.storage import Place, place_text
+from app.runs.tab_place import Place, place_text
 from app.server import Explorer
 from app.session.session import VIEW_RATE
 from model.config.config import Config
