@@ -256,17 +256,12 @@ if (!window.trackridePlots) {
   const drawInFront = (chart) => {
     const k = pointed.get(chart) ?? picked.get(chart), curve = chart.series[k];
     if (!curve?.show || !curve.drawn) return;
-    const {ctx, bbox: {left, top, width, height}} = chart;
-    ctx.save();
-    ctx.beginPath();
-    ctx.rect(left, top, width, height);
-    ctx.clip();
-    ctx.setLineDash([]);
-    ctx.lineWidth = curve.width * devicePixelRatio;
-    ctx.translate(ctx.lineWidth % 2 / 2, ctx.lineWidth % 2 / 2);  // as uPlot does
-    ctx.strokeStyle = curve.stroke(chart, k);
-    ctx.stroke(curve.drawn);
-    ctx.restore();
+    inPlot(chart, (ctx) => {
+      ctx.lineWidth = curve.width * devicePixelRatio;
+      ctx.translate(ctx.lineWidth % 2 / 2, ctx.lineWidth % 2 / 2);  // as uPlot does
+      ctx.strokeStyle = curve.stroke(chart, k);
+      ctx.stroke(curve.drawn);
+    });
   };
   const pointAt = (chart, k) => {  // let a curve stand out, with its baseline, among pale ones; undefined: none
     pointed.set(chart, k);

@@ -119,32 +119,23 @@ def profiles(
 
     `evaluate` may raise to give it up. What it takes no run for comes first, and at once.
     """
-    own = {axis.key: found.curve(base, axis, figures, None) for axis in axes}
-    bands: dict[str, Band] = {}
-    known = known_profile(base, axes, figures, found)
+    curves = _Curves(base, axes, figures, found)
+    known = curves.known()
     if known is not None:
         yield known
     for level in levels:
         if known is not None and level <= known.level and base.road.type != "random":
             continue
-        present = _fill(base, axes, figures, own, level, evaluate)
-        yield _profile(base, axes, figures, own, bands, present, level)
-        if not bands and base.road.type == "random":
-            bands = _bands(base, axes, figures, own, evaluate, found)
-            yield _profile(base, axes, figures, own, bands, present, level)
+        curves.fill(level, evaluate)
+        yield curves.profile(level)
+        if not curves.bands and base.road.type == "random":
+            curves.fill_bands(evaluate)
+            yield curves.profile(level)
 
 
 def known_profile(base: Config, axes: Sequence[Range], figures: tuple[str, ...], found: Found) -> Profile | None:
     """The finest profile that takes no run; None: there is none."""
-    own = {axis.key: found.curve(base, axis, figures, None) for axis in axes}
-    done = [
-        level
-        for level in LEVELS
-        if all(value in own[axis.key] for axis in axes for value in _wanted(base, axis, level))
-    ]
-    if not axes or not done:
-        return None
-    return _profile(base, axes, figures, own, {}, _present(base, axes[0], own), done[-1])
+    return _Curves(base, axes, figures, found).known()
 
 
 def effects(profile: Profile, figure: str) -> tuple[Effect, ...]:
@@ -177,95 +168,88 @@ def span_text(axis: Range) -> str:
     return f"{axis.key}={number_text(axis.low)}:{number_text(axis.high)}"
 
 
-def _wanted(base: Config, axis: Range, level: int) -> list[Value]:
-    """The values of a curve, the present one among them."""
-    present = base.value(axis.key)
-    values = steps(axis, level)
-    return values if present is None or present in values else [*values, present]
+_Point = tuple[dict[Value, Outcome], Range, Value, dict[str, Value]]  # a curve, its axis and value, what else changes
 
 
-def _present(base: Config, axis: Range, own: dict[str, dict[Value, Outcome]]) -> np.ndarray:
-    """(F,) figures of the base, which is a point of each curve."""
-    return _row(own[axis.key].get(base.value(axis.key)))
+class _Curves:
+    """The curves of a configuration along axes, as far as they are known."""
 
+    def __init__(self, base: Config, axes: Sequence[Range], figures: tuple[str, ...], found: Found) -> None:
+        self.base, self.axes, self.figures, self.found = base, axes, figures, found
+        self.own = {axis.key: found.curve(base, axis, figures, None) for axis in axes}
+        self.bands: dict[str, Band] = {}
+        self.itself: Outcome | None = next((own for own in map(self._present, axes) if own is not None), None)
 
-def _fill(
-    base: Config,
-    axes: Sequence[Range],
-    figures: tuple[str, ...],
-    own: dict[str, dict[Value, Outcome]],
-    level: int,
-    evaluate: Evaluate,
-) -> np.ndarray:
-    """Run what a level lacks. (F,) figures of the base itself."""
-    itself = next((own[a.key][base.value(a.key)] for a in axes if base.value(a.key) in own[a.key]), None)
-    if itself is None:
-        (itself,) = evaluate([Job(base, {}, figures)])
-    for axis in axes:
-        if base.value(axis.key) is not None:
-            own[axis.key][base.value(axis.key)] = itself
-    missing = [(axis.key, value) for axis in axes for value in _wanted(base, axis, level) if value not in own[axis.key]]
-    outcomes = evaluate([Job(base, {key: value}, figures) for key, value in missing])
-    for (key, value), outcome in zip(missing, outcomes, strict=True):
-        own[key][value] = outcome
-    return _row(itself)
+    def _present(self, axis: Range) -> Outcome | None:
+        """The configuration itself, which is a point of each curve."""
+        return self.own[axis.key].get(self.base.value(axis.key))
 
+    def _wanted(self, axis: Range, level: int) -> list[Value]:
+        """The values of a curve, the present one among them."""
+        present = self.base.value(axis.key)
+        values = steps(axis, level)
+        return values if present is None or present in values else [*values, present]
 
-def _bands(
-    base: Config,
-    axes: Sequence[Range],
-    figures: tuple[str, ...],
-    own: dict[str, dict[Value, Outcome]],
-    evaluate: Evaluate,
-    found: Found,
-) -> dict[str, Band]:
-    """Bands of all parameters but the seed itself, over SEEDS more roads, on the values of the first level."""
-    first, most = int(base.value(SEED)), int(PARAMETER[SEED].high)  # type: ignore[arg-type]
-    seeds = [first + k if first + k <= most else first - k for k in range(1, SEEDS + 1)]
-    axes = [axis for axis in axes if axis.key != SEED]
-    others = {(axis.key, seed): found.curve(base, axis, figures, seed) for axis in axes for seed in seeds}
-    missing = [
-        (axis.key, seed, value)
-        for seed in seeds
-        for axis in axes
-        for value in steps(axis, LEVELS[0])
-        if value not in others[axis.key, seed]
-    ]
-    outcomes = evaluate([Job(base, {SEED: seed, key: value}, figures) for key, seed, value in missing])
-    for (key, seed, value), outcome in zip(missing, outcomes, strict=True):
-        others[key, seed][value] = outcome
-    bands = {}
-    for axis in axes:
-        values = steps(axis, LEVELS[0])
-        curves = [own[axis.key], *(others[axis.key, seed] for seed in seeds)]
-        all_ = np.array([[_row(curve[value], len(figures)) for value in values] for curve in curves])
-        bands[axis.key] = Band(np.array(values, dtype=float), _extreme(all_, np.fmin), _extreme(all_, np.fmax))
-    return bands
+    def known(self) -> Profile | None:
+        """The finest profile that takes no run; None: there is none."""
+        done = [
+            level
+            for level in LEVELS
+            if all(value in self.own[axis.key] for axis in self.axes for value in self._wanted(axis, level))
+        ]
+        return self.profile(done[-1]) if self.axes and done else None
 
+    def fill(self, level: int, evaluate: Evaluate) -> None:
+        """Run what a level lacks."""
+        if self.itself is None:
+            (self.itself,) = evaluate([Job(self.base, {}, self.figures)])
+        for axis in self.axes:
+            if self.base.value(axis.key) is not None:
+                self.own[axis.key][self.base.value(axis.key)] = self.itself
+        self._run(
+            [(self.own[axis.key], axis, value, {}) for axis in self.axes for value in self._wanted(axis, level)],
+            evaluate,
+        )
 
-def _extreme(all_: np.ndarray, of: np.ufunc) -> np.ndarray:
-    """(M, F) of (S, M, F), those that are no number left out."""
-    return of.reduce(all_, axis=0)
+    def fill_bands(self, evaluate: Evaluate) -> None:
+        """Bands of all parameters but the seed itself, over SEEDS more roads, on the values of the first level."""
+        first, most = int(self.base.value(SEED)), int(PARAMETER[SEED].high)  # type: ignore[arg-type]
+        seeds = [first + k if first + k <= most else first - k for k in range(1, SEEDS + 1)]
+        axes = [axis for axis in self.axes if axis.key != SEED]
+        others = {(a.key, seed): self.found.curve(self.base, a, self.figures, seed) for a in axes for seed in seeds}
+        self._run(
+            [
+                (others[axis.key, seed], axis, value, {SEED: seed})
+                for seed in seeds
+                for axis in axes
+                for value in steps(axis, LEVELS[0])
+            ],
+            evaluate,
+        )
+        for axis in axes:
+            values = steps(axis, LEVELS[0])
+            curves = [self.own[axis.key], *(others[axis.key, seed] for seed in seeds)]
+            rows = np.array([[self._row(curve[value]) for value in values] for curve in curves])
+            low, high = np.fmin.reduce(rows), np.fmax.reduce(rows)  # those that are no number left out
+            self.bands[axis.key] = Band(np.array(values, dtype=float), low, high)
 
+    def _run(self, wanted: Sequence[_Point], evaluate: Evaluate) -> None:
+        """Fill curves where they lack a value of their axis, with other changes besides."""
+        missing = [(curve, axis.key, value, also) for curve, axis, value, also in wanted if value not in curve]
+        outcomes = evaluate([Job(self.base, also | {key: value}, self.figures) for _, key, value, also in missing])
+        for (curve, _, value, _), outcome in zip(missing, outcomes, strict=True):
+            curve[value] = outcome
 
-def _profile(
-    base: Config,
-    axes: Sequence[Range],
-    figures: tuple[str, ...],
-    own: dict[str, dict[Value, Outcome]],
-    bands: dict[str, Band],
-    present: np.ndarray,
-    level: int,
-) -> Profile:
-    curves = []
-    for axis in axes:
-        values = sorted(_wanted(base, axis, level))  # type: ignore[type-var]
-        rows = np.array([_row(own[axis.key][value], len(figures)) for value in values])
-        curves.append(Curve(axis, np.array(values, dtype=float), rows, bands.get(axis.key)))
-    return Profile(base, figures, present, tuple(curves), level)
+    def profile(self, level: int) -> Profile:
+        """All that a level has."""
+        curves = []
+        for axis in self.axes:
+            values = sorted(self._wanted(axis, level))  # type: ignore[type-var]
+            rows = np.array([self._row(self.own[axis.key][value]) for value in values])
+            curves.append(Curve(axis, np.array(values, dtype=float), rows, self.bands.get(axis.key)))
+        return Profile(self.base, self.figures, self._row(self.itself), tuple(curves), level)
 
-
-def _row(outcome: Outcome | None, count: int = 0) -> np.ndarray:
-    """(F,) figures as numbers."""
-    figures = (None,) * count if outcome is None else outcome.figures
-    return np.array([np.nan if value is None else value for value in figures], dtype=float)
+    def _row(self, outcome: Outcome | None) -> np.ndarray:
+        """(F,) figures as numbers."""
+        figures = (None,) * len(self.figures) if outcome is None else outcome.figures
+        return np.array([np.nan if value is None else value for value in figures], dtype=float)

@@ -100,25 +100,25 @@ def test_a_study_that_is_done_is_not_repeated(tab: Tab) -> None:
     assert tab.runs == runs
 
 
-def test_a_newer_request_gives_it_up_at_once(tab: Tab) -> None:
+def give_up_under_way(tab: Tab) -> None:
+    """Begin a study, and let a newer request come during its first run."""
     tab.gate.clear()
     tab.studies.tick(10.0, replace(RESTING, touched=False))
     assert tab.begun.wait(10)
     tab.newest = 2  # no tick between: the run under way itself looks
     tab.gate.set()
     wait_for(lambda: not tab.studies.busy, "its end")
+
+
+def test_a_newer_request_gives_it_up_at_once(tab: Tab) -> None:
+    give_up_under_way(tab)
     assert tab.gave_up
     assert tab.shown == []
     assert tab.runs <= 2
 
 
 def test_given_up_for_a_request_that_changed_nothing_it_begins_anew(tab: Tab) -> None:
-    tab.gate.clear()
-    tab.studies.tick(10.0, replace(RESTING, touched=False))
-    assert tab.begun.wait(10)
-    tab.newest = 2
-    tab.gate.set()
-    wait_for(lambda: not tab.studies.busy, "its end")
+    give_up_under_way(tab)
     again = replace(RESTING, number=2, shown=2)
     tab.studies.tick(11.0, again)
     tab.studies.tick(11.0 + REST, again)
