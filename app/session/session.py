@@ -35,6 +35,7 @@ from app.session.window import Window
 from app.session.workspace import Workspace
 from app.view3d.view import View3D
 from model.config.config import Config
+from model.config.profile_files import ProfileFile, Reading
 from model.simulation.simulate import simulate
 from model.simulation.trajectory import Trajectory
 from model.study import running as study_running
@@ -320,6 +321,20 @@ class Session:
 
     def upload_profile(self, name: str, content: bytes) -> None:
         self.post("profile", lambda: self._transfers.take_profile(name, content))
+
+    def ask_about_profile(self) -> None:
+        self.post("profile", lambda: self._transfers.ask_about_profile())
+
+    def look_at_profile(self, show: Callable[[], None]) -> None:
+        self.post("look", show)
+
+    def use_profile(self, read: Callable[[], tuple[str, ProfileFile, Reading] | None]) -> None:
+        def use() -> None:
+            found = read()
+            if found is not None:
+                self._transfers.use_profile(*found)
+
+        self.post("profile", use)
 
     def add_to_road(self, road_type: str) -> None:
         self.post("road", lambda: self._workspace.change_road(lambda config: with_part(config, road_type)))

@@ -72,7 +72,7 @@ class Reading:
     """How a file is to be read, in the words of `road.columns` and `road.units`."""
 
     columns: tuple[str, ...]  # of x and height; of height alone where the file's header tells x
-    units: tuple[str, str]  # of x and height
+    units: tuple[str, ...]  # of x and height
 
 
 class ProfileSource(Protocol):

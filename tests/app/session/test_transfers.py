@@ -282,18 +282,39 @@ def test_an_uploaded_configuration_is_used_or_its_faults_are_shown(rig: Rig) -> 
 
 
 def test_an_uploaded_profile_becomes_the_road_or_its_faults_are_shown(rig: Rig) -> None:
-    rig.transfers.take_profile("good.csv", b"x,y\n0,0\n1,0.1\n3,0\n")
+    rig.transfers.take_profile("good.csv", b"x [m],y [m]\n0,0\n1,0.1\n3,0\n")
     rig.wait()
     ((name, changes_of),) = rig.workspace.calls
     assert name == "change_road"
     assert changes_of(PAPER)["road.type"] == "profile"
-    assert rig.window.said == [
-        ("Another road", "good.csv: 3 points, 0 to 3 m, heights 0 to 100 mm; no unit named, read as m.")
-    ]
+    assert rig.window.said == [("Another road", "good.csv: 3 points, 0 to 3 m, heights 0 to 100 mm; read as m.")]
     rig.transfers.take_profile("bad.csv", b"x,y\n0,0\n1,high\n")
     rig.wait()
     assert "'high' is no number" in str(rig.window.faults[-1][1])
     assert len(rig.workspace.calls) == 1
+
+
+def test_a_profile_that_is_not_clear_is_asked_about_and_so_is_one_in_use_on_demand(rig: Rig) -> None:
+    content = b"x,y\n0,0\n1,90\n3,0\n"
+    rig.transfers.take_profile("a.csv", content)
+    rig.wait()
+    (asked,) = rig.window.asked
+    assert (asked.name, asked.reading.units, rig.workspace.calls) == ("a.csv", ("m", "mm"), [])
+    rig.transfers.ask_about_profile()  # it is not in use yet
+    assert rig.window.titles == ["No file here"]
+    read = asked.source.read(asked.reading.columns, asked.reading.units)
+    rig.transfers.use_profile("a.csv", read, asked.reading)
+    changes = rig.workspace.calls[0][1](PAPER)
+    assert changes["road.units"] == ("m", "mm")
+    assert (
+        rig.window.said[-1][1]
+        == "a.csv: 3 points, 0 to 3 m, heights 0 to 90 mm; x read as m, heights as mm; columns x and y."
+    )
+    rig.drawing.shown = make_run(PAPER.replace(changes))
+    rig.transfers.ask_about_profile()
+    rig.wait()
+    assert [(question.reading, question.why) for question in rig.window.asked[1:]] == [(asked.reading, "")]
+    assert rig.window.faults == []
 
 
 def test_an_uploaded_run_becomes_the_baseline_or_is_refused_with_a_word(rig: Rig) -> None:
