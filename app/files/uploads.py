@@ -17,6 +17,16 @@ RUN_LIMIT = 100e6  # bytes of a run's file…
 UNPACKED_LIMIT = 500e6  # … and of the arrays in it
 
 
+def text_in(content: bytes) -> str | None:
+    """The text of a configuration that may hold faults, to be mended; None: it is no text, or too large."""
+    if len(content) > SIZE_LIMIT:
+        return None
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return None
+
+
 def configuration(name: str, content: bytes) -> Config:
     """What a YAML file says. Raises ConfigError with all faults."""
     if len(content) > SIZE_LIMIT:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 from app.runs.study_choice import StudyChoice
-from model.config.config import Config
+from model.config.config import Config, ConfigError
 from model.config.profile_files import ProfileFile, Reading
 
 
@@ -68,6 +68,9 @@ class Actions(Protocol):
 
     def edit_yaml(self) -> None:
         """Open the present configuration as text."""
+
+    def mend_yaml(self, text: str, error: ConfigError) -> None:
+        """Open a text that is no configuration, for its faults to be mended."""
 
     def use_configuration(self, read: Callable[[], Config | None]) -> None:
         """Take the configuration that `read` gives, if it gives one. It may take its time: it runs later."""

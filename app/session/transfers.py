@@ -13,7 +13,7 @@ import numpy as np
 import viser
 
 from app.files.pictures import FIGURE_SIZE, MOVIE_LENGTH, MOVIE_RATE, NoPictureError, movie_frames, take_picture
-from app.files.uploads import ProfileQuestion, configuration, profile, profile_changes, question, run_from
+from app.files.uploads import ProfileQuestion, configuration, profile, profile_changes, question, run_from, text_in
 from app.format.file_names import file_name
 from app.panels.files_panel import PICTURE
 from app.runs.drive import DriveState
@@ -137,7 +137,7 @@ class Transfers:
         try:
             config = configuration(name, content)
         except ConfigError as error:
-            self._window.show_faults(f"{name[:60]} cannot be used", error)
+            self._window.show_faults(f"{name[:60]} cannot be used", error, text_in(content))
         else:
             self._workspace.use_configuration(config)
 

@@ -465,17 +465,17 @@ class Window:
     def say(self, title: str, body: str) -> None:
         self._notifications.show("said", title, body, "blue")
 
-    def show_faults(self, title: str, faults: ConfigError) -> None:
-        """Show all that is wrong with a configuration from outside."""
-        show_faults(self._client.gui, title, faults, self._actions)
+    def show_faults(self, title: str, faults: ConfigError, text: str | None = None) -> None:
+        """Show all that is wrong with a configuration from outside; text: its own, which the user may mend."""
+        show_faults(self._client.gui, title, faults, self._actions, text)
 
     def ask_about_profile(self, question: ProfileQuestion) -> None:
         """Ask how the file of a profile is to be read."""
         ProfileForm(self._client.gui, question, self._actions)
 
-    def edit_yaml(self, config: Config) -> None:
-        """Open a configuration as text."""
-        YamlWindow(self._client.gui, config, self._actions)
+    def edit_yaml(self, text: str, faults: ConfigError | None = None) -> None:
+        """Open the text of a configuration, and lead to its faults."""
+        YamlWindow(self._client.gui, text, self._actions, faults)
 
     def store(self, state: str) -> None:
         """Have the tab store a text until its page is loaded anew."""

@@ -77,8 +77,9 @@ class FakeWindow:
     def say(self, title: str, body: str) -> None:
         self.said.append((title, body))
 
-    def show_faults(self, title: str, faults: ConfigError) -> None:
+    def show_faults(self, title: str, faults: ConfigError, text: str | None = None) -> None:
         self.faults.append((title, faults))
+        self.to_mend = text
 
     def ask_about_profile(self, question: ProfileQuestion) -> None:
         self.asked.append(question)

@@ -279,6 +279,7 @@ def test_an_uploaded_configuration_is_used_or_its_faults_are_shown(rig: Rig) -> 
     assert title == "bad.yaml cannot be used"
     assert len(faults.faults) == 2
     assert len(rig.workspace.calls) == 1
+    assert rig.window.to_mend == "drive: {speed_kmh: 4000}\nroads: {}\n"
 
 
 def test_an_uploaded_profile_becomes_the_road_or_its_faults_are_shown(rig: Rig) -> None:
@@ -509,14 +510,34 @@ def test_faults_of_an_uploaded_configuration_are_all_shown_escaped_and_nothing_c
     text = "drive: {speed_kmh: 4000}\nvehicle: {'<img src=x onerror=alert(1)>': 3}\nroads: {}\n"
     upload(tab, "Open a configuration", "bad.yaml", text.encode())
     shown = wait_for(lambda: html(tab, "trackride-faults"), "the faults")
-    assert shown.count("<li>") == 3
+    assert shown.count("<li") == 3
     assert "<style>" in shown  # those of tabs that nobody has opened are not there
     assert "from 0.5 to 100 km/h" in shown
     assert "the nearest known one is road" in shown
     assert "<img" not in shown
     assert tab.shows_run(2)
+    assert "Line 1: drive.speed_kmh" in shown
     tab.use("Close", True)
     wait_for(lambda: [m for m in tab.messages if m["type"] == "GuiCloseModalMessage"])
+
+
+def test_a_faulty_configuration_is_mended_as_text(tab: Tab) -> None:
+    text = "name: My tank\nroad: {type: sine, amplitude: 0.1\ndrive: {speed_kmh: 40}\n"
+    upload(tab, "Open a configuration", "bad.yaml", text.encode())
+    wait_for(lambda: "line 2 is" in html(tab, "trackride-faults"), "the fault")
+    tab.use("Edit", True)
+    wait_for(lambda: tab.widget("YAML")["value"] == text, "the text")
+    assert 'data-line="2"' in html(tab, "trackride-faults")
+    mended = text.replace("0.1", "0.1}")
+    tab.use("YAML", mended.replace("40", "4000"))
+    tab.use("Use this", True)
+    wait_for(lambda: "Line 3: drive.speed_kmh" in html(tab, "trackride-faults"), "the next fault")
+    tab.use("YAML", mended)
+    tab.use("Use this", True)
+    wait_for(lambda: tab.widget("Preset")["value"] == "My tank", "the mended one")
+    upload(tab, "Open a configuration", "bad.yaml", b"\xff\xfe\x00")
+    wait_for(lambda: "not UTF-8" in html(tab, "trackride-faults"), "the fault")
+    assert not [w for w in tab.widgets.values() if w["props"].get("label") == "Edit"]
 
 
 def test_a_configuration_is_edited_as_text(tab: Tab) -> None:
