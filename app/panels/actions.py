@@ -6,7 +6,8 @@ from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
 from app.runs.study_choice import StudyChoice
-from model.config.config import Config
+from model.config.config import Config, ConfigError
+from model.config.profile_files import ProfileFile, Reading
 
 
 class Actions(Protocol):
@@ -49,7 +50,16 @@ class Actions(Protocol):
         """Take the last part of the road away."""
 
     def upload_profile(self, name: str, content: bytes) -> None:
-        """Make the road of a file."""
+        """Make the road of a file, or ask how it is to be read where it does not say so itself."""
+
+    def ask_about_profile(self) -> None:
+        """Ask how the file of the present profile is to be read."""
+
+    def look_at_profile(self, show: Callable[[], None]) -> None:
+        """Have a window show a file as it is to be read now. It may take its time: it runs later."""
+
+    def use_profile(self, read: Callable[[], tuple[str, ProfileFile, Reading] | None]) -> None:
+        """Make the road of what `read` gives, if it gives something: a file's name, what was read of it, and how."""
 
     # Configurations
 
@@ -58,6 +68,9 @@ class Actions(Protocol):
 
     def edit_yaml(self) -> None:
         """Open the present configuration as text."""
+
+    def mend_yaml(self, text: str, error: ConfigError) -> None:
+        """Open a text that is no configuration, for its faults to be mended."""
 
     def use_configuration(self, read: Callable[[], Config | None]) -> None:
         """Take the configuration that `read` gives, if it gives one. It may take its time: it runs later."""

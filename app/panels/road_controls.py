@@ -44,11 +44,16 @@ class ProfileControl(RoadControl):
         self._upload = gui.add_upload_button(
             "Open a profile",
             mime_type=".csv,.txt,.tsv,.erd,.crg",
-            hint="A table of distance and height (CSV and the like; in m, or as its headings say), ERD "
-            "or OpenCRG; it becomes the road. If it is not level under the vehicle, it is put 1 m ahead of the first "
-            "wheel.",
+            hint="A table of distance and height (CSV and the like), ERD or OpenCRG; it becomes the road. What its "
+            "headings leave open is asked first. If it is not level under the vehicle, it is put 1 m ahead of the "
+            "first wheel.",
         )
         self._extent = gui.add_html("")
+        self._ask = gui.add_button(
+            "Columns and units",
+            hint="How the file of this profile is read: which columns hold distance and height, and in which units",
+        )
+        self._ask.on_click(by_user(lambda event: actions.ask_about_profile(), actions.fail))
         file = self._upload
         file.on_upload(by_user(lambda event: actions.upload_profile(file.value.name, file.value.content), actions.fail))
 
@@ -60,7 +65,7 @@ class ProfileControl(RoadControl):
 
     def enable(self, applies: bool) -> None:
         """Only a profile has an extent; but a profile can be opened on any road."""
-        self._extent.visible = applies
+        self._extent.visible = self._ask.visible = applies
 
 
 class PartsControl(RoadControl):

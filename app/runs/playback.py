@@ -57,14 +57,19 @@ class Playback:
         self.time = end if at_present else min(max(self.time, start), end)
 
 
-def time_to_look(run: Trajectory, before: Trajectory, time: float) -> float:
-    """When to look at a run that comes while `time`, s, of the one before it is looked at.
+def of_another_kind(run: Trajectory, before: Trajectory) -> bool:
+    """Whether the road has other obstacles or waves, not only others of the same kind."""
+    return _shapes(run) != _shapes(before)
 
-    That time again, unless there are other obstacles or waves and the vehicle has left them behind by then: there it
-    would stand on level road. Then just before the first wheel comes to them.
+
+def time_to_look(run: Trajectory, time: float) -> float:
+    """When to look at a run whose road is another than that of the run that was looked at until now, at `time`, s.
+
+    That time again, unless the vehicle has left all that is uneven behind by then: it would stand on level road. Then
+    just before the first wheel comes to it.
     """
-    uneven = run.road.uneven if len(run.t) and _shapes(run) != _shapes(before) else None
-    if uneven is None:
+    uneven = run.road.uneven if len(run.t) else None
+    if uneven is None or run.road.profile.period > 0.0:  # waves never end
         return time
     wheels, radius = run.q[:, run.system.wheel, 0], run.system.r
     now = min(int(np.searchsorted(run.t, time)), len(run.t) - 1)

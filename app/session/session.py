@@ -19,7 +19,8 @@ import viser
 
 from app.panels.road_parts import with_part, without_last
 from app.plots.study_data import Data
-from app.runs.playback import Playback, time_to_look
+from app.runs.history import REST
+from app.runs.playback import Playback, of_another_kind, time_to_look
 from app.runs.request import Driven, Failed, Finished, Outcome, Refused, Request, Simulate, first_request
 from app.runs.runner import Runner
 from app.runs.study_choice import StudyChoice
@@ -34,7 +35,9 @@ from app.session.vehicle_view import VehicleView
 from app.session.window import Window
 from app.session.workspace import Workspace
 from app.view3d.view import View3D
-from model.config.config import Config
+from model.config.config import Config, ConfigError
+from model.config.config_files import dump_config
+from model.config.profile_files import ProfileFile, Reading
 from model.simulation.simulate import simulate
 from model.simulation.trajectory import Trajectory
 from model.study import running as study_running
@@ -81,6 +84,7 @@ class Session:
 
         self._presets = dict(presets)  # and the user's own, which the workspace adds
         self._good: Finished | Driven | None = None  # what is shown
+        self._road_changed = False  # while the user has paused, and may still be changing it
         self._place = TabPlace()
         self._steps = 0  # to be redone, or undone when negative; under the lock
         self._errors = Seldom()
@@ -152,6 +156,9 @@ class Session:
         with self._lock:
             self._steps += 1
         self._stir()
+
+    def mend_yaml(self, text: str, error: ConfigError) -> None:
+        self.post("yaml", lambda: self._window.edit_yaml(text, error))
 
     def use_configuration(self, read: Callable[[], Config | None]) -> None:
         def use() -> None:
@@ -321,6 +328,20 @@ class Session:
     def upload_profile(self, name: str, content: bytes) -> None:
         self.post("profile", lambda: self._transfers.take_profile(name, content))
 
+    def ask_about_profile(self) -> None:
+        self.post("profile", lambda: self._transfers.ask_about_profile())
+
+    def look_at_profile(self, show: Callable[[], None]) -> None:
+        self.post("look", show)
+
+    def use_profile(self, read: Callable[[], tuple[str, ProfileFile, Reading] | None]) -> None:
+        def use() -> None:
+            found = read()
+            if found is not None:
+                self._transfers.use_profile(*found)
+
+        self.post("profile", use)
+
     def add_to_road(self, road_type: str) -> None:
         self.post("road", lambda: self._workspace.change_road(lambda config: with_part(config, road_type)))
 
@@ -427,15 +448,14 @@ class Session:
                 with self._lock:
                     self._refused = None
                     self._playback.fit(float(run.t[-1]) if len(run.t) else 0.0)
-                    before = self._playback.time
-                    if not self._playback.playing and isinstance(self._good, Finished):
-                        self._playback.time = time_to_look(run, self._good.trajectory, before)
-                    time = self._playback.time
+                    time, playing = self._playback.time, self._playback.playing
+                last = self._good.trajectory if isinstance(self._good, Finished) else None
                 self._good, self._shown_at = outcome, monotonic()
                 self._window.show_run(outcome, time, settled=self._runner.latest.number == request.number)
-                if time < before:
-                    self._window.say("Another obstacle", f"From {before:.2f} s back to {time:.2f} s, just before it.")
-                    self._window.view.mark_obstacle(True)
+                if last is not None and not playing and run.config.road != last.config.road:
+                    self._road_changed = True
+                    if of_another_kind(run, last):
+                        self._look_at_the_road(run)
                 self._workspace.finished(outcome, monotonic())
             case Driven(request, state):
                 with self._lock:
@@ -477,6 +497,7 @@ class Session:
         ):
             self._window.refuse(refused, self._good.trajectory.config)
         if playback.playing:
+            self._road_changed = False
             self._window.view.mark_obstacle(False)
         self._window.draw(playback.time, elapsed)
         if not with_text:
@@ -487,6 +508,8 @@ class Session:
             if not self._rests:
                 self._window.show_time(playback, driving)
                 self._window.show_status(self._runner.under_way())
+        if self._road_changed and isinstance(self._good, Finished) and now >= self._shown_at + REST:
+            self._look_at_the_road(self._good.trajectory)
         self._workspace.tick(now)
         self._address.tick(now)
         self._window.mark_changes(self._workspace.present)
@@ -497,6 +520,16 @@ class Session:
             self._transfers.run_again(missing)
         if news is not None:
             self._transfers.remember(news)
+
+    def _look_at_the_road(self, run: Trajectory) -> None:
+        """Bring the user, who has paused, to just before the run's obstacle if the vehicle has left it behind."""
+        self._road_changed = False
+        with self._lock:
+            before = self._playback.time
+            time = self._playback.time = time_to_look(run, before)
+        if time < before:
+            self._window.say("Another obstacle", f"From {before:.2f} s back to {time:.2f} s, just before it.")
+            self._window.view.mark_obstacle(True)
 
     def _mind_the_place(self, now: float) -> None:
         """Go back to where the tab was, once its run is shown again; after that let the tab store where it is."""
@@ -557,4 +590,4 @@ class Session:
     def _edit_yaml(self) -> None:
         run = self.shown
         if run is not None:
-            self._window.edit_yaml(run.config)
+            self._window.edit_yaml(dump_config(run.config))

@@ -13,7 +13,7 @@ import numpy as np
 import viser
 
 from app.files.pictures import FIGURE_SIZE, MOVIE_LENGTH, MOVIE_RATE, NoPictureError, movie_frames, take_picture
-from app.files.uploads import configuration, profile_changes, run_from
+from app.files.uploads import ProfileQuestion, configuration, profile, profile_changes, question, run_from, text_in
 from app.format.file_names import file_name
 from app.panels.files_panel import PICTURE
 from app.runs.drive import DriveState
@@ -23,8 +23,9 @@ from app.runs.storage import State, state_from
 from app.session.background import BackgroundJob
 from app.session.window import Window
 from app.session.workspace import Workspace
-from model.config.config import Config, ConfigError
+from model.config.config import Config, ConfigError, ProfileRoad
 from model.config.config_files import dump_config
+from model.config.profile_files import ProfileFile, Reading
 from model.simulation.trajectory import Trajectory
 
 AT_REST = ("figure.png", "figure.svg", "replay", "movie")  # these show one stretch of a drive and take a while to make
@@ -111,6 +112,7 @@ class Transfers:
         self._client, self._drawing, self._window, self._workspace = client, drawing, window, workspace
         self._simulate = simulate
         self._files, self._memory = BackgroundJob(drawing.fail), BackgroundJob(drawing.fail)
+        self._profile: tuple[str, bytes] | None = None  # name and content of the last file with a profile
         self._makers: dict[str, tuple[str, Callable[[Download], tuple[str, bytes]]]] = {
             PICTURE: ("", self._picture),
             "figure.png": ("Drawing the figure…", partial(self._figure, ".png")),
@@ -135,13 +137,37 @@ class Transfers:
         try:
             config = configuration(name, content)
         except ConfigError as error:
-            self._window.show_faults(f"{name[:60]} cannot be used", error)
+            self._window.show_faults(f"{name[:60]} cannot be used", error, text_in(content))
         else:
             self._workspace.use_configuration(config)
 
     def take_profile(self, name: str, content: bytes) -> None:
-        """Request the profile in an uploaded file as the road."""
+        """Request the profile in an uploaded file as the road, or ask how the file is to be read."""
         self._begin(partial(self._measure, name, content))
+
+    def ask_about_profile(self) -> None:
+        """Ask how the file of the present profile is to be read, if it is one that came by this page."""
+        shown = self._drawing.shown
+        road = None if shown is None else shown.config.road
+        if self._profile is None or not isinstance(road, ProfileRoad) or road.file != self._profile[0]:
+            self._window.say(
+                "No file here", "Only this profile's points are here. To choose columns, open its file again."
+            )
+        else:
+            self._begin(partial(self._ask, *self._profile, Reading(road.columns, road.units)))
+
+    def use_profile(self, name: str, read: ProfileFile, reading: Reading | None) -> None:
+        """Request what was read of a file as the road; reading: how the user wanted it to be read."""
+        run = self._drawing.shown
+        if run is None:
+            return
+        try:
+            changes = profile_changes(name, read, reading, run.config)
+        except ConfigError as error:
+            self._window.show_faults(f"{name[:60]} cannot be used", error)
+        else:
+            self._workspace.change_road(lambda config: changes)
+            self._window.say("Another road", f"{name[:60]}: {read.said}.")
 
     def take_run(self, name: str, content: bytes) -> None:
         """Make the run in an uploaded file the baseline."""
@@ -303,24 +329,34 @@ class Transfers:
                 self._drawing.post("again", lambda: self._workspace.made_again(config, run))
 
     def _measure(self, name: str, content: bytes) -> None:
-        run = self._drawing.shown
-        if run is None:
-            return
+        name = " ".join(name.split())
         try:
-            changes, said = profile_changes(name, content, run.config)
+            found = profile(name, content)
         except ConfigError as error:
-            faults = error
-            self._drawing.post("faults", lambda: self._window.show_faults(f"{name[:60]} cannot be used", faults))
+            self._refuse(name, error)
             return
-        self._drawing.post("profile", lambda: self._workspace.change_road(lambda config: changes))
-        self._say("Another road", f"{name[:60]}: {said}.")
+        self._profile = name, content
+        if isinstance(found, ProfileQuestion):
+            self._drawing.post("profile", lambda: self._window.ask_about_profile(found))
+        else:
+            self._drawing.post("profile", lambda: self.use_profile(name, found, None))
+
+    def _ask(self, name: str, content: bytes, present: Reading) -> None:
+        try:
+            asked = question(name, content, present)
+        except ConfigError as error:
+            self._refuse(name, error)
+        else:
+            self._drawing.post("profile", lambda: self._window.ask_about_profile(asked))
+
+    def _refuse(self, name: str, error: ConfigError) -> None:
+        self._drawing.post("faults", lambda: self._window.show_faults(f"{name[:60]} cannot be used", error))
 
     def _unpack(self, name: str, content: bytes) -> None:
         try:
             run = run_from(name, content)
         except ConfigError as error:
-            faults = error
-            self._drawing.post("faults", lambda: self._window.show_faults(f"{name[:60]} cannot be used", faults))
+            self._refuse(name, error)
         except ValueError as error:
             self._say("No run", str(error))
         else:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import viser
 
+from app.files.uploads import ProfileQuestion
 from app.format.colours import wheel_palette
 from app.format.load_unit import load_unit
 from app.format.markup import element
@@ -34,6 +35,7 @@ from app.panels.palette import add_palette
 from app.panels.parameter_panel import ParameterPanel
 from app.panels.playback_panel import PlaybackPanel, covered
 from app.panels.plot_panel import RUNS, STUDY, PlotPanel
+from app.panels.profile_form import ProfileForm
 from app.panels.runs_panel import RunsPanel
 from app.panels.shortcuts import add_shortcuts
 from app.panels.status_line import BUSY_DELAY, drive_facts, progress_line, run_line, status_line
@@ -463,13 +465,17 @@ class Window:
     def say(self, title: str, body: str) -> None:
         self._notifications.show("said", title, body, "blue")
 
-    def show_faults(self, title: str, faults: ConfigError) -> None:
-        """Show all that is wrong with a configuration from outside."""
-        show_faults(self._client.gui, title, faults, self._actions)
+    def show_faults(self, title: str, faults: ConfigError, text: str | None = None) -> None:
+        """Show all that is wrong with a configuration from outside; text: its own, which the user may mend."""
+        show_faults(self._client.gui, title, faults, self._actions, text)
 
-    def edit_yaml(self, config: Config) -> None:
-        """Open a configuration as text."""
-        YamlWindow(self._client.gui, config, self._actions)
+    def ask_about_profile(self, question: ProfileQuestion) -> None:
+        """Ask how the file of a profile is to be read."""
+        ProfileForm(self._client.gui, question, self._actions)
+
+    def edit_yaml(self, text: str, faults: ConfigError | None = None) -> None:
+        """Open the text of a configuration, and lead to its faults."""
+        YamlWindow(self._client.gui, text, self._actions, faults)
 
     def store(self, state: str) -> None:
         """Have the tab store a text until its page is loaded anew."""

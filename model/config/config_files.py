@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ from model.config.config import Config, SimpleRoad, SumRoad, config_from_dict, n
 from model.config.parameters import PARAMETER, PART_LIMIT, Value
 from model.config.profile_files import ProfileFile, read_profile_file
 from model.config.profile_points import FILE_LIMIT, PointsError
-from model.config.strict_yaml import dump_yaml, parse_yaml
+from model.config.strict_yaml import dump_yaml, key_lines, parse_yaml
 from model.config.validation import ConfigError, Fault, convert, shorten
 from model.files import read_file
 
@@ -123,7 +124,7 @@ def _configured(
     except ConfigError as error:
         faults += error.faults
     if faults:
-        raise ConfigError(faults, source)
+        raise ConfigError(_placed(faults, text), source)
     if on_read is not None:
         for sentence in said:
             on_read(sentence)
@@ -165,11 +166,15 @@ def _parsed(text: str) -> Any:
         return parse_yaml(text)
     except yaml.reader.ReaderError as error:
         line = text.count("\n", 0, error.position) + 1
-        raise _text_error(f"line {line}: not YAML text: the character U+{error.character:04X} is not allowed") from None
+        message = f"line {line}: not YAML text: the character U+{error.character:04X} is not allowed"
+        raise _text_error(message, line=line) from None
     except yaml.MarkedYAMLError as error:
         mark, problem = error.problem_mark, " ".join((error.problem or "not YAML").split())
         where = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
-        raise _text_error(where + _CLEARER.get(problem, problem) + _lines(text, mark, error.context_mark)) from None
+        message = where + _CLEARER.get(problem, problem) + _lines(text, mark, error.context_mark)
+        began = error.context_mark if error.context and "block" not in error.context else None  # such as a [ left open
+        place = began or mark
+        raise _text_error(message, line=place.line + 1 if place else 0) from None
 
 
 def _lines(text: str, mark: yaml.Mark | None, context: yaml.Mark | None) -> str:
@@ -181,5 +186,13 @@ def _lines(text: str, mark: yaml.Mark | None, context: yaml.Mark | None) -> str:
     return "".join(f"; line {number + 1} is {shorten(line)}" for number, line in shown.items() if line)
 
 
-def _text_error(message: str, source: str = "") -> ConfigError:
-    return ConfigError([Fault("", "", message)], source)
+def _text_error(message: str, source: str = "", line: int = 0) -> ConfigError:
+    return ConfigError([Fault("", "", message, line)], source)
+
+
+def _placed(faults: list[Fault], text: str) -> list[Fault]:
+    """The faults with the lines of their keys. One without a key is of a text that may be no YAML."""
+    if not any(fault.path for fault in faults):
+        return faults
+    lines = key_lines(text, [fault.path for fault in faults])
+    return [replace(fault, line=line) for fault, line in zip(faults, lines, strict=True)]

@@ -41,10 +41,15 @@ def points_count(count: int) -> str:
 
 def span_text(x: np.ndarray, y: np.ndarray) -> str:
     """What points (K,) in m span, in words: "241 points, 0 to 60 m, heights −31 to 45 mm"."""
-    unit, factor = ("mm", 1e3) if np.abs(y).max() < 1.0 else ("m", 1.0)
+    unit, factor = height_unit(y)
     low, high = (f"{value:.4g}".replace("-", "\u2212") for value in (y.min() * factor + 0.0, y.max() * factor + 0.0))
     first, last = (number_text(round(float(value), 2) + 0.0).replace("-", "\u2212") for value in (x[0], x[-1]))
     return f"{points_count(len(x))}, {first} to {last} m, heights {low} to {high} {unit}"
+
+
+def height_unit(y: np.ndarray) -> tuple[str, float]:
+    """The unit in which people read heights (K,) in m, and how many of it are a metre."""
+    return ("mm", 1e3) if np.abs(y).max() < 1.0 else ("m", 1.0)
 
 
 def _checked(rows: list[str], name: Callable[[int], str]) -> tuple[np.ndarray, np.ndarray]:

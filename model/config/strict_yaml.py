@@ -7,7 +7,7 @@ say. So `6e7` is a number, duplicate keys are errors, and tags, anchors and alia
 from __future__ import annotations
 
 import re
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from typing import Any
 
 import yaml
@@ -31,6 +31,35 @@ def parse_yaml(text: str) -> Any:
         raise yaml.MarkedYAMLError(problem=problem, problem_mark=loader.get_mark()) from None
     finally:
         loader.dispose()
+
+
+def key_lines(text: str, paths: Sequence[str]) -> list[int]:
+    """The lines, from 1, on which a YAML text that can be parsed has dotted keys, such as road.parts[0].height.
+
+    Of a key that is not there: the line of the section that it would be in. 0: not even that is there.
+    """
+    loader = _Loader(text)
+    try:
+        root = loader.get_single_node()
+    finally:
+        loader.dispose()
+    return [_line(root, path) for path in paths]
+
+
+def _line(node: yaml.Node | None, path: str) -> int:
+    line = 0
+    for key, number in re.findall(r"([^.\[\]]+)|\[(\d+)\]", path):
+        if key and isinstance(node, yaml.MappingNode):
+            found = [(name, value) for name, value in node.value if name.value == key]
+        elif number and isinstance(node, yaml.SequenceNode):
+            found = [(item, item) for item in node.value[int(number) : int(number) + 1]]
+        else:
+            found = []
+        if not found:
+            break
+        place, node = found[0]
+        line = place.start_mark.line + 1
+    return line
 
 
 def dump_yaml(value: dict[str, Any]) -> str:

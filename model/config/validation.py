@@ -6,7 +6,7 @@ import math
 import numbers
 import reprlib
 from collections.abc import Callable, Iterator, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from difflib import SequenceMatcher, get_close_matches
 from itertools import pairwise
 from typing import Any
@@ -46,6 +46,7 @@ class Fault:
     path: str  # dotted key; empty: the text as a whole
     value: str  # what was given, shortened
     message: str  # what is wrong and what is allowed, with the unit
+    line: int = field(default=0, compare=False)  # of the text that says it, from 1; 0: not known
 
     def __str__(self) -> str:
         return f"{self.path}: {self.message}" if self.path else self.message

@@ -135,6 +135,38 @@ def test_faults_of_a_file_are_shown_and_nothing_changes(at_rest: Explorer, tmp_p
     at_rest.fold("Import and presets")
 
 
+def test_a_faulty_file_is_mended_at_the_line_that_is_wrong(at_rest: Explorer, tmp_path: Path) -> None:
+    page = at_rest.page
+    at_rest.fold("Import and presets")
+    before = at_rest.run_number()
+    lines = [*(f"# remark {k}" for k in range(80)), "drive: {speed_kmh: 33", "road: {type: sine}", "name: Mended"]
+    upload(at_rest, tmp_path / "bad.yaml", "\n".join(lines))
+    page.get_by_role("dialog").get_by_role("button", name="Edit").click()
+    area = page.get_by_role("dialog").locator("textarea:not([aria-hidden])")
+    marked = "area => area.value.slice(area.selectionStart, area.selectionEnd)"
+    page.wait_for_function(f"area => ({marked})(area) === 'drive: {{speed_kmh: 33'", arg=area.element_handle())
+    assert area.evaluate("area => document.activeElement === area && area.scrollTop > 500")
+    page.keyboard.press("ArrowRight")  # to the end of what is marked
+    page.keyboard.type("00}")
+    use = page.get_by_role("dialog").get_by_role("button", name="Use this")
+    use.click()
+    fault = page.locator(".trackride-faults li")
+    expect(fault).to_contain_text("Line 81: drive.speed_kmh")
+    page.wait_for_function(f"area => ({marked})(area) === 'drive: {{speed_kmh: 3300}}'", arg=area.element_handle())
+    page.keyboard.press("ArrowRight")
+    for key in ("ArrowLeft", "Backspace", "Backspace"):
+        page.keyboard.press(key)
+    use.click()
+    at_rest.wait_for_run(after=before)
+    expect(page.get_by_role("dialog")).to_have_count(0)
+    expect(at_rest.control("Preset")).to_have_value("Mended")
+    assert at_rest.value("Speed") == 33
+    at_rest.control("Preset").click()
+    page.get_by_role("option", name="Paper vehicle", exact=True).click()
+    at_rest.wait_for_value("Speed", "now === 15")
+    at_rest.fold("Import and presets")
+
+
 def test_preset_parameters_runs_and_baseline_come_back_with_a_reload(at_rest: Explorer, tmp_path: Path) -> None:
     page = at_rest.page
     page.get_by_role("tab", name="Runs").click()

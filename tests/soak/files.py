@@ -10,7 +10,7 @@ from time import perf_counter
 
 import numpy as np
 
-from app.files.uploads import configuration, profile_changes, run_from
+from app.files.uploads import ProfileQuestion, configuration, profile, profile_changes, run_from
 from app.runs.request import first_request
 from app.runs.storage import state_from, state_text
 from model.config.config_files import dump_config, load_config, preset_names
@@ -114,7 +114,11 @@ def _read(kind: str, content: bytes) -> None:
     if kind == "YAML":
         configuration("a.yaml", content)
     elif kind == "profile":
-        profile_changes("a.csv", content, load_config("paper"))
+        found, reading = profile("a.csv", content), None
+        if isinstance(found, ProfileQuestion):
+            reading = found.reading
+            found = found.source.read(reading.columns, reading.units)
+        profile_changes("a.csv", found, reading, load_config("paper"))
     elif kind == "NPZ":
         run_from("a.npz", content)
         with tempfile.NamedTemporaryFile(suffix=".npz") as file:

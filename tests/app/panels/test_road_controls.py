@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.files.uploads import profile_changes
 from app.panels.road_parts import parts_from, parts_text, with_part, without_last
 from app.runs.history import run_name
 from app.runs.request import Request
@@ -114,23 +113,13 @@ def test_runs_on_new_roads_have_short_names() -> None:
 # Profiles
 
 
-def test_a_profile_stays_where_its_file_says_or_comes_ahead_of_the_vehicle() -> None:
-    assert "road.start" not in profile_changes("a.csv", b"3,0\n4,0.1\n", PAPER)[0]
-    assert profile_changes("a.csv", b"0,5\n4,5.1\n", PAPER)[0]["road.start"] == 2.75
-    changes, said = profile_changes("a.csv", b"x [m],z [m]\n12345.6,5\n12350,5.1\n", PAPER)
-    assert "road.start" not in changes
-    assert "its first point is a station" in said
-    config = PAPER.replace({"road.type": "profile", "road.columns": ["a", "b"], "road.units": "mm"})
-    assert config.replace(profile_changes("a.csv", b"3,0\n4,0.1\n", config)[0]).road.columns == ()
-
-
 def test_a_profile_is_opened_in_a_tab(explore: Any, open_tab: Any) -> None:
     tab: Tab = open_tab(explore())
     wait_for(lambda: tab.shows_run(1), "run 1")
     upload(tab, "Open a profile", "bad.csv", b"x,y\n0,0\n1,high\n")
     wait_for(lambda: "line 3: &#x27;high&#x27; is no number" in html(tab, "trackride-faults"), "the fault")
     assert tab.widget("Road type")["value"] == "sine"
-    upload(tab, "Open a profile", "good.csv", b"x,y\n0,0\n1,0.1\n3,0\n")
+    upload(tab, "Open a profile", "good.csv", b"x [m],y [m]\n0,0\n1,0.1\n3,0\n")
     wait_for(lambda: tab.widget("Road type")["value"] == "profile", "the profile")
     wait_for(lambda: "3 points, 3 m long, 0.1 m high" in tab.html("trackride-extent"), "what it is")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.runs.playback import AHEAD, SPEEDS, STEP, Playback, time_to_look
+from app.runs.playback import AHEAD, SPEEDS, STEP, Playback, of_another_kind, time_to_look
 from model import load_config, simulate
 
 
@@ -62,18 +62,19 @@ def test_without_a_run_time_stands_still() -> None:
     assert playback.time == 0
 
 
-def test_who_looks_at_level_road_behind_an_obstacle_is_led_to_another_that_is_chosen() -> None:
+def test_who_looks_at_level_road_behind_an_obstacle_is_led_to_another() -> None:
     half_round = load_config("half_round").replace({"simulation.duration": 4})
-    behind = simulate(half_round)
     step = simulate(half_round.replace({"road.type": "step"}))
-    time = time_to_look(step, behind, 3.5)
-    front = float(np.interp(time, step.t, step.q[:, step.system.wheel, 0].max(axis=1))) + step.system.r
-    assert step.road.uneven is not None
-    assert step.road.uneven[0] - AHEAD <= front <= step.road.uneven[0]
-    assert time_to_look(step, behind, 0.8) == 0.8  # on it
     higher = simulate(half_round.replace({"road.height": 0.05}))
-    assert time_to_look(higher, behind, 3.5) == 3.5  # the same kind: what comes after it is looked at
-    waves = simulate(load_config("paper").replace({"simulation.duration": 4}))
-    assert time_to_look(waves, behind, 3.5) == 3.5
+    for run in (step, higher):
+        time = time_to_look(run, 3.5)
+        front = float(np.interp(time, run.t, run.q[:, run.system.wheel, 0].max(axis=1))) + run.system.r
+        assert run.road.uneven is not None
+        assert run.road.uneven[0] - AHEAD <= front <= run.road.uneven[0]
+        assert time_to_look(run, 0.8) == 0.8  # on it
+    waves = simulate(load_config("paper").replace({"simulation.duration": 8}))
+    assert time_to_look(waves, 8.0) == 8.0
     level = simulate(half_round.replace({"road.type": "flat"}))
-    assert time_to_look(level, behind, 3.5) == 3.5
+    assert time_to_look(level, 3.5) == 3.5
+    assert of_another_kind(step, higher)
+    assert not of_another_kind(higher, simulate(half_round))

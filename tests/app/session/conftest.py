@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from app.files.uploads import ProfileQuestion
 from app.plots.curves import Beside
 from app.runs.history import Kept, Runs
 from app.runs.request import Request
@@ -60,6 +61,7 @@ class FakeWindow:
         self.dark = False
         self.said: list[tuple[str, str]] = []  # title and body
         self.faults: list[tuple[str, ConfigError]] = []
+        self.asked: list[ProfileQuestion] = []  # how a profile is to be read
         self.presets: dict[str, Config] = {}
         self.chosen = ""
         self.ghosts: list[Trajectory | None] = []
@@ -75,8 +77,12 @@ class FakeWindow:
     def say(self, title: str, body: str) -> None:
         self.said.append((title, body))
 
-    def show_faults(self, title: str, faults: ConfigError) -> None:
+    def show_faults(self, title: str, faults: ConfigError, text: str | None = None) -> None:
         self.faults.append((title, faults))
+        self.to_mend = text
+
+    def ask_about_profile(self, question: ProfileQuestion) -> None:
+        self.asked.append(question)
 
     def show_presets(self, presets: Mapping[str, Config], chosen: str) -> None:
         self.presets, self.chosen = dict(presets), chosen

@@ -317,12 +317,13 @@ def test_a_tab_that_is_loaded_anew_stands_where_it_was_and_stores_where_it_goes(
     wait_for(lambda: "&quot;time&quot;: 1.5," in tab.html("trackride-place").replace('"', "&quot;"), "the new place")
 
 
-def test_an_obstacle_that_the_user_is_led_back_to_is_marked_until_the_run_plays(explore: Any, open_tab: Any) -> None:
-    def drive_past(config: Config, **how: Any) -> Trajectory:
-        run = make_run(config, samples=401)
-        run.q[:, :, 0] += config.drive.speed_kmh / 3.6 * run.t[:, None]
-        return run
+def drive_past(config: Config, **how: Any) -> Trajectory:
+    run = make_run(config, samples=401)
+    run.q[:, :, 0] += config.drive.speed_kmh / 3.6 * run.t[:, None]
+    return run
 
+
+def test_an_obstacle_that_the_user_is_led_back_to_is_marked_until_the_run_plays(explore: Any, open_tab: Any) -> None:
     explorer = explore(load_config("half_round"), "half_round", run=drive_past)
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
@@ -335,3 +336,25 @@ def test_an_obstacle_that_the_user_is_led_back_to_is_marked_until_the_run_plays(
     wait_for(lambda: view.times[-1] < 3.0, "the moment before it")
     tab.press("Play or pause")
     wait_for(lambda: not view.marks_obstacle, "the mark to go")
+
+
+def test_who_changes_an_obstacle_behind_the_vehicle_is_led_back_once_it_rests(
+    explore: Any, open_tab: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.session.session.REST", 3.0)
+    explorer = explore(load_config("half_round"), "half_round", run=drive_past)
+    tab: Tab = open_tab(explorer)
+    wait_for(lambda: tab.shows_run(1))
+    view: FakeView = explorer.sessions[0]._window.view
+    tab.use("Time, s", 3.9)
+    wait_for(lambda: view.times[-1] == 3.9)
+    tab.use("Speed, km/h", 22)  # the road is the same
+    wait_for(lambda: tab.shows_run(2))
+    for number, height in enumerate((120, 140, 160), 3):  # quicker than rest
+        tab.use("Obstacle height, mm", height)
+        wait_for(lambda number=number: tab.shows_run(number))
+        assert not view.marks_obstacle
+        assert view.times[-1] == 3.9
+    wait_for(lambda: view.marks_obstacle, "the mark")
+    wait_for(lambda: view.times[-1] < 3.0, "the moment before it")
+    assert [n["title"] for n in tab.notifications].count("Another obstacle") == 1

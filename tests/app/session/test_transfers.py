@@ -279,21 +279,43 @@ def test_an_uploaded_configuration_is_used_or_its_faults_are_shown(rig: Rig) -> 
     assert title == "bad.yaml cannot be used"
     assert len(faults.faults) == 2
     assert len(rig.workspace.calls) == 1
+    assert rig.window.to_mend == "drive: {speed_kmh: 4000}\nroads: {}\n"
 
 
 def test_an_uploaded_profile_becomes_the_road_or_its_faults_are_shown(rig: Rig) -> None:
-    rig.transfers.take_profile("good.csv", b"x,y\n0,0\n1,0.1\n3,0\n")
+    rig.transfers.take_profile("good.csv", b"x [m],y [m]\n0,0\n1,0.1\n3,0\n")
     rig.wait()
     ((name, changes_of),) = rig.workspace.calls
     assert name == "change_road"
     assert changes_of(PAPER)["road.type"] == "profile"
-    assert rig.window.said == [
-        ("Another road", "good.csv: 3 points, 0 to 3 m, heights 0 to 100 mm; no unit named, read as m.")
-    ]
+    assert rig.window.said == [("Another road", "good.csv: 3 points, 0 to 3 m, heights 0 to 100 mm; read as m.")]
     rig.transfers.take_profile("bad.csv", b"x,y\n0,0\n1,high\n")
     rig.wait()
     assert "'high' is no number" in str(rig.window.faults[-1][1])
     assert len(rig.workspace.calls) == 1
+
+
+def test_a_profile_that_is_not_clear_is_asked_about_and_so_is_one_in_use_on_demand(rig: Rig) -> None:
+    content = b"x,y\n0,0\n1,90\n3,0\n"
+    rig.transfers.take_profile("a.csv", content)
+    rig.wait()
+    (asked,) = rig.window.asked
+    assert (asked.name, asked.reading.units, rig.workspace.calls) == ("a.csv", ("m", "mm"), [])
+    rig.transfers.ask_about_profile()  # it is not in use yet
+    assert rig.window.titles == ["No file here"]
+    read = asked.source.read(asked.reading.columns, asked.reading.units)
+    rig.transfers.use_profile("a.csv", read, asked.reading)
+    changes = rig.workspace.calls[0][1](PAPER)
+    assert changes["road.units"] == ("m", "mm")
+    assert (
+        rig.window.said[-1][1]
+        == "a.csv: 3 points, 0 to 3 m, heights 0 to 90 mm; x read as m, heights as mm; columns x and y."
+    )
+    rig.drawing.shown = make_run(PAPER.replace(changes))
+    rig.transfers.ask_about_profile()
+    rig.wait()
+    assert [(question.reading, question.why) for question in rig.window.asked[1:]] == [(asked.reading, "")]
+    assert rig.window.faults == []
 
 
 def test_an_uploaded_run_becomes_the_baseline_or_is_refused_with_a_word(rig: Rig) -> None:
@@ -488,14 +510,34 @@ def test_faults_of_an_uploaded_configuration_are_all_shown_escaped_and_nothing_c
     text = "drive: {speed_kmh: 4000}\nvehicle: {'<img src=x onerror=alert(1)>': 3}\nroads: {}\n"
     upload(tab, "Open a configuration", "bad.yaml", text.encode())
     shown = wait_for(lambda: html(tab, "trackride-faults"), "the faults")
-    assert shown.count("<li>") == 3
+    assert shown.count("<li") == 3
     assert "<style>" in shown  # those of tabs that nobody has opened are not there
     assert "from 0.5 to 100 km/h" in shown
     assert "the nearest known one is road" in shown
     assert "<img" not in shown
     assert tab.shows_run(2)
+    assert "Line 1: drive.speed_kmh" in shown
     tab.use("Close", True)
     wait_for(lambda: [m for m in tab.messages if m["type"] == "GuiCloseModalMessage"])
+
+
+def test_a_faulty_configuration_is_mended_as_text(tab: Tab) -> None:
+    text = "name: My tank\nroad: {type: sine, amplitude: 0.1\ndrive: {speed_kmh: 40}\n"
+    upload(tab, "Open a configuration", "bad.yaml", text.encode())
+    wait_for(lambda: "line 2 is" in html(tab, "trackride-faults"), "the fault")
+    tab.use("Edit", True)
+    wait_for(lambda: tab.widget("YAML")["value"] == text, "the text")
+    assert 'data-line="2"' in html(tab, "trackride-faults")
+    mended = text.replace("0.1", "0.1}")
+    tab.use("YAML", mended.replace("40", "4000"))
+    tab.use("Use this", True)
+    wait_for(lambda: "Line 3: drive.speed_kmh" in html(tab, "trackride-faults"), "the next fault")
+    tab.use("YAML", mended)
+    tab.use("Use this", True)
+    wait_for(lambda: tab.widget("Preset")["value"] == "My tank", "the mended one")
+    upload(tab, "Open a configuration", "bad.yaml", b"\xff\xfe\x00")
+    wait_for(lambda: "not UTF-8" in html(tab, "trackride-faults"), "the fault")
+    assert not [w for w in tab.widgets.values() if w["props"].get("label") == "Edit"]
 
 
 def test_a_configuration_is_edited_as_text(tab: Tab) -> None:

@@ -274,6 +274,27 @@ def test_values_by_path():
             config.value(path)
 
 
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [
+        ("name: A\ndrive: {speed_kmh: 4000}\n", [2]),
+        ("# mine\ndrive:\n  driver: {}\n  speed_kmh: 4000\nroads: {}\n", [5, 3, 4]),
+        ("road:\n  type: sum\n  parts:\n    - type: step\n    - {type: step, height: 90}\n", [5]),
+        ("road:\n  type: half_round\n  amplitude: 1\n", [3]),
+        ("name: A\nvehicle:\n  road_wheels: [1, 2\n  seat: {x: 1}\nroad: {}\n", [3]),  # where the bracket opens
+        ("name: A\nroad:\n  type: sine\n amplitude: 1\n", [4]),
+        ("name: A\nroad\ndrive: {}\n", [2]),
+        ("name: 'A\ndrive: {}\n", [1]),
+        ("name: A\ndrive: \x07\n", [2]),
+        ("- 1\n- 2\n", [0]),
+    ],
+)
+def test_faults_of_a_text_know_their_lines(text, lines):
+    with pytest.raises(ConfigError) as error:
+        parse_config(text)
+    assert sorted(fault.line for fault in error.value.faults) == sorted(lines), error.value
+
+
 def test_single_values_as_on_the_command_line():
     config = Config().replace({"contact.normal_stiffness": parse_value("5e7"), "road.start": parse_value("null")})
     assert (config.contact.normal_stiffness, config.road.start) == (5e7, None)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from model.config.config import ConfigError
 from model.config.config_files import read_profile
-from model.config.profile_files import read_profile_file
+from model.config.profile_files import Reading, open_profile_file, read_profile_file
 from model.config.profile_points import POINT_LIMIT, PointsError, points, points_text
 
 FIELD = Path(__file__).parents[2] / "field"
@@ -228,6 +228,81 @@ def test_any_content_gives_points_or_a_fault(content):
         return
     assert len(x) == len(y) >= 2
     assert points_text(x, y) == points_text(*points(points_text(x, y)))
+
+
+# What is likely, where a file alone is not clear
+
+
+def likely(text: str) -> Reading | None:
+    """What is proposed; it is one of the ways in which the file can be read."""
+    source = open_profile_file(text.encode())
+    found = source.likely()
+    if found is not None:
+        assert set(found.columns) <= set(source.columns)
+        source.read(found.columns, found.units)
+    return found
+
+
+def rough(heading: str, scale: float) -> str:
+    heights = scale * np.random.default_rng(0).standard_normal((50, heading.count(",") or 1))
+    rows = (f"{0.5 * k:g}," + ",".join(f"{height:.3f}" for height in row) for k, row in enumerate(heights))
+    return "\n".join([*([heading] if heading.strip(",") else []), *rows])
+
+
+@pytest.mark.parametrize(
+    ("heading", "scale", "columns", "units"),
+    [
+        (",", 50.0, ("1", "2"), ("m", "mm")),
+        ("x,z", 50.0, ("x", "z"), ("m", "mm")),
+        ("x [m],z [m]", 50.0, ("x [m]", "z [m]"), ("m", "mm")),
+        ("# heights in cm\nx,z", 5.0, ("x", "z"), ("m", "cm")),
+        ("dist [ft],elev", 0.1, ("dist [ft]", "elev"), ("ft", "ft")),
+        ("dist,elev [in]", 0.1, ("dist", "elev [in]"), ("ft", "in")),
+        ("x [m],height_mm [m]", 50.0, ("x [m]", "height_mm [m]"), ("m", "mm")),
+        ("x [m],left,right", 0.05, ("x [m]", "left"), ("m", "m")),
+        (",,,", 0.05, ("1", "2"), ("m", "m")),
+        ("station,z,z", 0.05, ("station", "2"), ("m", "m")),
+        ("km,a [mm],b [mm]", 50.0, ("km", "a [mm]"), ("m", "mm")),
+    ],
+)
+def test_what_is_likely_where_a_file_is_not_clear(heading, scale, columns, units):
+    assert likely(rough(heading, scale)) == Reading(columns, units)
+
+
+def test_distance_is_a_column_that_grows_and_height_rather_one_that_does_not():
+    rows = "\n".join(f"{3 * k},{k},{height}" for k, height in enumerate((0, 1, 0, 2)))
+    assert likely(f"easting,time,q\n{rows}") == Reading(("easting", "q"), ("m", "m"))
+    assert likely("0,0\n0.1,5\n0.0,10\n0.1,15") == Reading(("2", "1"), ("m", "m"))
+
+
+@pytest.mark.parametrize("text", ["x,y\n0,0\n1,high\n", "x,z\n8,0\n6,1\n0,0\n", "100,2\n101,5\n103,7\n104,9"])
+def test_what_can_be_read_in_no_way_has_no_likely_one(text):
+    assert likely(text) is None
+
+
+@pytest.mark.parametrize(
+    ("text", "doubt"),
+    [
+        ("x [m],height_mm\n0,0\n1,0\n", ""),
+        ("Straße [m];Höhe [m]\n0;0\n1;0\n", "No heading says which columns are distance and height"),
+        ("x,z [m]\n0,0\n1,0\n", "The heading of x names no unit"),
+        ("x,z\n0,0\n1,0\n", "The heading of x and of z names no unit"),
+        ("0 0\n1 0\n", "No heading says which columns are distance and height"),
+    ],
+)
+def test_what_a_file_does_not_say(text, doubt):
+    assert open_profile_file(text.encode()).doubt == doubt
+
+
+def test_channels_are_chosen_too():
+    source = open_profile_file((FIELD / "two_tracks.erd").read_bytes())
+    assert source.labels == ("LElev.", "RElev.")
+    assert source.doubt == "It has several channels: LElev., RElev."
+    assert source.likely() == Reading(("LElev.",), ("m", "mm"))
+    one = "ERDFILEV2.00\n 1, 3, -1, 1, 5, 0.5, -1,\nSHORTNAMElev.\nUNITSNAM{}\nXUNITS  m\nEND\n 0\n 30\n 0\n"
+    assert open_profile_file(one.format("mm").encode()).doubt == ""
+    unknown = open_profile_file(one.format("volts").encode())
+    assert unknown.likely() == Reading(("Elev.",), ("m", "mm"))  # 30 m within half a metre would be too steep
 
 
 # ERD and OpenCRG
