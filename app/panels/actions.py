@@ -169,9 +169,10 @@ class Actions(Protocol):
     # Downloads
 
     def export(self, what: str) -> None:
-        """Make a file and let the browser download it; what: a key of app.session.transfers.Transfers."""
+        """Make a file and let the browser download it; what: a key of app.session.downloads.Downloads."""
 
-    def cancel_export(self) -> None: ...
+    def cancel_export(self, number: int) -> None:
+        """Make the file of this number (app/panels/export_list.py) no more."""
 
     # What the page itself tells
 

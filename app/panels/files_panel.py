@@ -7,7 +7,8 @@ from typing import Any
 
 import viser
 
-from app.files.pictures import MOVIE_LENGTH, MOVIE_RATE, SIZES
+from app.files.movie_frames import FROM_START, LENGTHS, RATE, MovieChoice
+from app.files.pictures import SIZES
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 
@@ -15,7 +16,6 @@ PICTURE = "picture"
 FIGURE_BUTTONS = {"PNG": "figure.png", "SVG": "figure.svg"}  # shown -> what is exported
 DATA_BUTTONS = {"CSV": "run.csv", "NPZ": "run.npz", "YAML": "yaml"}
 MOTION_BUTTONS = {"Replay": "replay", "Movie": "movie"}
-CANCEL = "Cancel"
 SAVE, EDIT = "Save preset", "Edit YAML"
 
 
@@ -32,7 +32,9 @@ class FilesPanel:
                 hint="An address that opens this vehicle, road, baseline and view in anybody's explorer",
                 icon=viser.Icon.LINK,
             )
-            self._size = gui.add_dropdown("Picture size", tuple(SIZES), hint="Of screenshots: pixels, width × height")
+            self._size = gui.add_dropdown(
+                "Picture size", tuple(SIZES), hint="Of screenshots and movies: pixels, width × height"
+            )
             self._transparent = gui.add_checkbox(
                 "Transparent", False, hint="Screenshots show vehicle and road without sky and ground"
             )
@@ -50,11 +52,17 @@ class FilesPanel:
             )
             moving = gui.add_button_group(
                 "In motion",
-                (*MOTION_BUTTONS, CANCEL),
-                hint="Replay: the run as one HTML file that plays in any browser, in a few seconds. Movie: "
-                f"{MOVIE_LENGTH:g} s of the 3-D view from the present time on. The page draws each of its "
-                f"{MOVIE_LENGTH * MOVIE_RATE:.0f} frames anew and must stay in front: without a graphics card that can "
-                "take three minutes. Cancel: stop making either.",
+                tuple(MOTION_BUTTONS),
+                hint="Replay: the run as one HTML file that plays in any browser, in a few seconds. Movie: of the 3-D "
+                f"view. The page draws each of its {RATE:g} frames a second anew and must stay in front: without a "
+                "graphics card a second of the movie can take a minute.",
+            )
+            self._length = gui.add_dropdown("Movie length", tuple(LENGTHS), hint="Of the run that is filmed, at most")
+            self._start = gui.add_dropdown(
+                "Movie from", tuple(FROM_START), hint="Where in the run the movie begins: at the time shown, or at 0 s"
+            )
+            self._stamped = gui.add_checkbox(
+                "Time stamp", False, hint="Movies say time, vehicle and speed in their lower left corner"
             )
         with into:
             name: Any = gui.add_text("Preset name", "", hint="A name for the present parameters")
@@ -87,19 +95,21 @@ class FilesPanel:
 
     @property
     def size(self) -> tuple[int, int]:
-        """Of pictures, px."""
+        """Of pictures and movies, px."""
         return SIZES[self._size.value]
 
     @property
     def transparent(self) -> bool:
         return self._transparent.value
 
+    @property
+    def movie(self) -> MovieChoice:
+        """What is filmed."""
+        return MovieChoice(LENGTHS[self._length.value], FROM_START[self._start.value], self._stamped.value)
+
 
 def _exporting(actions: Actions, buttons: dict[str, str]) -> Callable[[Any], None]:
     def act(event: Any) -> None:
-        if event.target.value == CANCEL:
-            actions.cancel_export()
-        else:
-            actions.export(buttons[event.target.value])
+        actions.export(buttons[event.target.value])
 
     return act
