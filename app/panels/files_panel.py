@@ -13,7 +13,7 @@ from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 
 PICTURE = "picture"
-FIGURE_BUTTONS = {"PNG": "figure.png", "SVG": "figure.svg"}  # shown -> what is exported
+FIGURE_BUTTONS = {"PNG": "figure.png", "SVG": "figure.svg", "Report": "report"}  # shown -> what is exported
 DATA_BUTTONS = {"CSV": "run.csv", "NPZ": "run.npz", "YAML": "yaml"}
 MOTION_BUTTONS = {"Replay": "replay", "Movie": "movie"}
 SAVE, EDIT = "Save preset", "Edit YAML"
@@ -42,7 +42,8 @@ class FilesPanel:
             figure = gui.add_button_group(
                 "Figure",
                 tuple(FIGURE_BUTTONS),
-                hint="One page to take home: the 3-D view, the plots with their baseline, all figures and parameters",
+                hint="PNG, SVG: one page to take home, with the 3-D view, the plots, all figures and parameters. Report: "
+                "all of it at length as one HTML file. Both compare with the baseline.",
             )
             data = gui.add_button_group(
                 "Data",

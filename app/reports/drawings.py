@@ -6,6 +6,7 @@ import io
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -21,6 +22,7 @@ LEFT, RIGHT, ABOVE, BELOW = 0.5, 0.12, 0.32, 0.5  # inches around a plot, for it
 HEADROOM = 0.11  # of a plot's height, for the name of a mark
 SMALL = 8.5  # points
 NUMBER_ROOM = 0.15  # of a plot's height, above and below its curves, for the number of a peak
+LINES: dict[str, tuple[Any, float]] = {"static": ((0, (1, 1.6)), 1.0), "baseline": ((0, (3, 1.5)), 0.5)}  # and opacity
 NAMES = 0.6  # of a plot's width that its curves' names may take
 
 
@@ -175,14 +177,16 @@ def draw_plot(axes: Axes, plot: Plot, look: Look) -> None:
     """One plot of the explorer: its curves over its axis, their names in their colours beside the title."""
     plain_axes(axes, look, f"{plot.title}, {plot.unit}", plot.axis)
     for curve, values in zip(plot.curves, plot.values.T, strict=True):
-        axes.plot(plot.x, values, color=curve.colour, lw=1.1, ls=(0, (1, 1.6)) if curve.kind == "static" else "-")
+        lines, alpha = LINES.get(curve.kind, ("-", 1.0))
+        axes.plot(plot.x, values, color=curve.colour, lw=1.1, ls=lines, alpha=alpha)
     mark_peaks(axes, [(peak, plot.curves[peak.curve].colour) for peak in plot.peaks], look)
     if plot.least is not None:
         low, high = axes.get_ylim()
         axes.set_ylim(min(low, plot.least[0]), max(high, plot.least[1]))
     axes.set_xlim(plot.x[0], max(plot.x[-1], plot.x[0] + 1e-3))
-    if len(plot.curves) > 1:
-        _name_curves(axes, plot.curves)
+    named = tuple(curve for curve in plot.curves if curve.kind != "baseline")
+    if len(named) > 1:
+        _name_curves(axes, named)
 
 
 def _name_curves(axes: Axes, curves: tuple[Curve, ...]) -> None:

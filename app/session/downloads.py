@@ -33,6 +33,7 @@ from model.simulation.trajectory import Trajectory
 
 AT_REST = ("figure.png", "figure.svg", "replay", "movie")  # these show one stretch of a drive and take a while to make
 PAUSE_FIRST = "Pause the drive first (Space): what is shown then, its last seconds, is what you download."
+NO_REPORT = "A report is of a run from its start. Change from Drive to Run first."
 NO_RUN = "A drive cannot be repeated from a file as a run can. Take CSV, or change from Drive to Run first."
 MOST = 20  # exports that are not done, at most
 MEASURED = 5  # frames of a movie after which it is said how long the others will take
@@ -97,7 +98,9 @@ class Download:
         """Which files cannot be made now, and why."""
         if self.drive is None:
             return {}
-        return {"run.npz": NO_RUN} | ({} if self.drive.stands else dict.fromkeys(AT_REST, PAUSE_FIRST))
+        return {"run.npz": NO_RUN, "report": NO_REPORT} | (
+            {} if self.drive.stands else dict.fromkeys(AT_REST, PAUSE_FIRST)
+        )
 
 
 class StoppedError(Exception):
@@ -127,6 +130,7 @@ class Downloads:
             "run.npz": Export("NPZ", made, partial(self._run, ".npz")),
             "yaml": Export("YAML", made, self._yaml),
             "replay": Export("Replay", made, self._replay),
+            "report": Export("Report", made, self._report),
         }
 
     def send(self, what: str, download: Download) -> None:
@@ -225,6 +229,17 @@ class Downloads:
         if page is None:
             raise StoppedError
         return download.name("replay", ".html"), page.encode()
+
+    def _report(self, download: Download, job: Job) -> tuple[str, bytes]:
+        from app.reports.run_report import report_page  # here: matplotlib takes a second to load
+
+        def go_on(part: float) -> None:
+            if job.stopped():
+                raise StoppedError
+            job.tell(part)
+
+        page = report_page(download.run, download.title, download.baseline, go_on)
+        return download.name("report", ".html"), page.encode()
 
     def _movie(self, download: Download, job: Job) -> tuple[str, bytes]:
         from app.files.movie import movie

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import app.reports.run_report
 import app.reports.sheet
 from app.files.movie_frames import LENGTHS, MovieChoice
 from app.files.pictures import FIGURE_SIZE
@@ -186,6 +187,24 @@ def test_sky_and_ground_come_back_after_a_picture_that_failed(rig: Rig) -> None:
     assert rig.window.surroundings == [False, True]
 
 
+def test_a_report_is_the_commands_with_the_baseline_and_says_how_far_it_is(
+    rig: Rig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    parts: list[float | None] = []
+
+    def page(run: Any, source: str, baseline: Any, on_progress: Callable[[float], None]) -> str:
+        for part in (0.0, 0.5):
+            on_progress(part)
+            parts.append(rig.downloads._queues[1].jobs[0].part)
+        return f"{source}, {run.config.drive.speed_kmh} against {baseline.config.drive.speed_kmh}"
+
+    monkeypatch.setattr(app.reports.run_report, "report_page", page)
+    name, content = rig.send("report", baseline=make_run(PAPER))
+    assert name == "paper-vehicle_speed-22-km-h_report.html"
+    assert content.decode() == "Paper vehicle: Speed 15 → 22 km/h, 22.0 against 15.0"
+    assert parts == [0.0, 0.5]
+
+
 def test_a_movie_films_what_was_shown_and_leaves_the_view_as_it_was(rig: Rig) -> None:
     name, content = rig.send("movie")
     assert name == "paper-vehicle_speed-22-km-h.mp4"
@@ -253,7 +272,7 @@ def test_what_a_drive_gives_to_take_home(rig: Rig) -> None:
     assert rig.send("run.csv", **drive)[0] == "paper-vehicle_speed-22-km-h_drive-0-0-s.csv"
     state = driver.stand()
     stood = replace(rig.download, run=state.past, drive=state)
-    assert stood.refusal.keys() == {"run.npz"}
+    assert stood.refusal.keys() == {"run.npz", "report"}
     assert stood.title == "Paper vehicle: Speed 15 → 22 km/h, drive 0–0 s"
 
 
