@@ -85,6 +85,9 @@ class Actions(Protocol):
     def upload_run(self, name: str, content: bytes) -> None:
         """Make the run in an NPZ file the baseline."""
 
+    def upload_project(self, name: str, content: bytes) -> None:
+        """Open a project, after a question where that would lose something."""
+
     def rename(self, name: str) -> None:
         """Name the run that is shown, and keep it."""
 

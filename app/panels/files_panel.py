@@ -11,10 +11,12 @@ from app.files.movie_frames import FROM_START, LENGTHS, RATE, MovieChoice
 from app.files.pictures import SIZES
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
+from app.runs.project import SUFFIX
 
 PICTURE = "picture"
 FIGURE_BUTTONS = {"PNG": "figure.png", "SVG": "figure.svg", "Report": "report"}  # shown -> what is exported
 DATA_BUTTONS = {"CSV": "run.csv", "NPZ": "run.npz", "YAML": "yaml"}
+PROJECT = "project"
 MOTION_BUTTONS = {"Replay": "replay", "Movie": "movie"}
 SAVE, EDIT = "Save preset", "Edit YAML"
 
@@ -42,8 +44,8 @@ class FilesPanel:
             figure = gui.add_button_group(
                 "Figure",
                 tuple(FIGURE_BUTTONS),
-                hint="PNG, SVG: one page to take home, with the 3-D view, the plots, all figures and parameters. Report: "
-                "all of it at length as one HTML file. Both compare with the baseline.",
+                hint="PNG, SVG: one page to take home, with 3-D view, plots, figures and parameters. Report: all of it "
+                "at length as one HTML file. Both compare with the baseline.",
             )
             data = gui.add_button_group(
                 "Data",
@@ -65,6 +67,11 @@ class FilesPanel:
             self._stamped = gui.add_checkbox(
                 "Time stamp", False, hint="Movies say time, vehicle and speed in their lower left corner"
             )
+            project = gui.add_button(
+                "Save project",
+                hint="One file for all that is here: kept runs with their names, baseline, your presets, what is shown "
+                "and the choices of the Study tab. Import opens it again.",
+            )
         with into:
             name: Any = gui.add_text("Preset name", "", hint="A name for the present parameters")
             present = gui.add_button_group(
@@ -83,6 +90,11 @@ class FilesPanel:
                 mime_type=".npz",
                 hint="An NPZ file, such as Data saves: it is compared with what is shown",
             )
+            opened = gui.add_upload_button(
+                "Open a project",
+                mime_type=SUFFIX,
+                hint="A file that Save project has made: it takes the place of runs, baseline and parameters",
+            )
         link.on_click(by_user(lambda event: actions.copy_link(), fail))
         picture.on_click(by_user(lambda event: actions.export(PICTURE), fail))
         for group, buttons in ((figure, FIGURE_BUTTONS), (data, DATA_BUTTONS), (moving, MOTION_BUTTONS)):
@@ -92,6 +104,8 @@ class FilesPanel:
         config.on_upload(
             by_user(lambda event: actions.upload_configuration(config.value.name, config.value.content), fail)
         )
+        project.on_click(by_user(lambda event: actions.export(PROJECT), fail))
+        opened.on_upload(by_user(lambda event: actions.upload_project(opened.value.name, opened.value.content), fail))
         run.on_upload(by_user(lambda event: actions.upload_run(run.value.name, run.value.content), fail))
 
     @property

@@ -25,6 +25,7 @@ from app.panels.files_panel import PICTURE
 from app.plots.curves import Beside
 from app.runs.drive import DriveState
 from app.runs.history import run_name
+from app.runs.project import Project, project_text
 from app.runs.request import Request
 from app.session.background import Job, JobQueue
 from app.session.window import InView, Window
@@ -142,6 +143,11 @@ class Downloads:
             self._window.say("Enough for now", f"{MOST} files are being made. Cancel some, or wait a moment.")
         else:
             export.queue.add(Job(export.title, partial(self._deliver, partial(export.make, download))))
+
+    def send_project(self, name: str, project: Project) -> None:
+        """Let the browser download a project."""
+        _, made = self._queues
+        made.add(Job("Project", partial(self._deliver, lambda job: (name, project_text(project).encode()))))
 
     def cancel(self, number: int) -> None:
         """Make the file of this job no more."""

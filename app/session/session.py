@@ -17,9 +17,11 @@ from typing import Any
 
 import viser
 
+from app.panels.files_panel import PROJECT
 from app.panels.road_parts import with_part, without_last
 from app.plots.study_data import Data
 from app.runs.playback import Playback, time_to_look
+from app.runs.project import SUFFIX
 from app.runs.request import Driven, Failed, Finished, Outcome, Refused, Request, Simulate, first_request
 from app.runs.runner import Runner
 from app.runs.study_choice import StudyChoice
@@ -320,6 +322,9 @@ class Session:
     def upload_run(self, name: str, content: bytes) -> None:
         self.post("upload", lambda: self._transfers.take_run(name, content))
 
+    def upload_project(self, name: str, content: bytes) -> None:
+        self.post("project", lambda: self._transfers.take_project(name, content))
+
     def upload_profile(self, name: str, content: bytes) -> None:
         self.post("profile", lambda: self._transfers.take_profile(name, content))
 
@@ -537,23 +542,24 @@ class Session:
             return
         with self._lock:
             time = self._playback.time
-        self._downloads.send(
-            what,
-            Download(
-                request=self._good.request,
-                run=run,
-                baseline=self._workspace.baseline,
-                beside=self._window.beside,
-                size=files.size,
-                transparent=files.transparent,
-                background=self._window.background,
-                dark=self._window.dark,
-                movie=files.movie,
-                time=time,
-                drive=self._good.state if isinstance(self._good, Driven) else None,
-                mode_shown=self._window.shows_mode,
-            ),
+        download = Download(
+            request=self._good.request,
+            run=run,
+            baseline=self._workspace.baseline,
+            beside=self._window.beside,
+            size=files.size,
+            transparent=files.transparent,
+            background=self._window.background,
+            dark=self._window.dark,
+            movie=files.movie,
+            time=time,
+            drive=self._good.state if isinstance(self._good, Driven) else None,
+            mode_shown=self._window.shows_mode,
         )
+        if what == PROJECT:
+            self._downloads.send_project(download.name("", SUFFIX), self._workspace.project(self._studies.choice))
+        else:
+            self._downloads.send(what, download)
 
     def _edit_yaml(self) -> None:
         run = self.shown

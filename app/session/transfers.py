@@ -11,6 +11,7 @@ from typing import Protocol
 import viser
 
 from app.files.uploads import configuration, profile_changes, run_from
+from app.runs.project import project_from
 from app.runs.request import Simulate
 from app.runs.storage import State, state_from
 from app.session.background import BackgroundJob
@@ -67,6 +68,10 @@ class Transfers:
     def take_run(self, name: str, content: bytes) -> None:
         """Make the run in an uploaded file the baseline."""
         self._begin(partial(self._unpack, name, content))
+
+    def take_project(self, name: str, content: bytes) -> None:
+        """Open the project in an uploaded file."""
+        self._begin(partial(self._open, name, content))
 
     def close(self) -> None:
         """End the jobs."""
@@ -144,6 +149,24 @@ class Transfers:
             self._say("No run", str(error))
         else:
             self._drawing.post("baseline", lambda: self._workspace.take_in(run, name.removesuffix(".npz")))
+
+    def _open(self, name: str, content: bytes) -> None:
+        try:
+            project = project_from(name, content)
+        except ConfigError as error:
+            faults = error
+            self._drawing.post("faults", lambda: self._window.show_faults(f"{name[:60]} cannot be opened", faults))
+            return
+        act = partial(self._drawing.post, "project", partial(self._workspace.open_project, project))
+        self._drawing.post("ask", lambda: self._ask_or_open(name, act))
+
+    def _ask_or_open(self, name: str, act: Callable[[], None]) -> None:
+        """On the thread that draws."""
+        lost = self._workspace.at_hand
+        if lost:
+            self._window.ask(f"Open {name[:60]}?", f"It takes the place of {lost}. Your presets stay.", "Open", act)
+        else:
+            act()
 
 
 def _state(text: str) -> State | None:

@@ -35,6 +35,7 @@ from app.panels.palette import add_palette
 from app.panels.parameter_panel import ParameterPanel
 from app.panels.playback_panel import PlaybackPanel, covered
 from app.panels.plot_panel import RUNS, STUDY, PlotPanel
+from app.panels.question import ask
 from app.panels.runs_panel import RunsPanel
 from app.panels.shortcuts import add_shortcuts
 from app.panels.status_line import BUSY_DELAY, drive_facts, progress_line, run_line, status_line
@@ -529,6 +530,10 @@ class Window:
     def show_faults(self, title: str, faults: ConfigError) -> None:
         """Show all that is wrong with a configuration from outside."""
         show_faults(self._client.gui, title, faults, self._actions)
+
+    def ask(self, title: str, words: str, yes: str, act: Callable[[], None]) -> None:
+        """Have the user say yes or no; act: called on the event loop at a yes."""
+        ask(self._client.gui, title, words, yes, act, self._actions)
 
     def edit_yaml(self, config: Config) -> None:
         """Open a configuration as text."""

@@ -78,6 +78,8 @@ class FakeWindow:
         self.chosen = ""
         self.ghosts: list[Trajectory | None] = []
         self.exports = FakeExportList()
+        self.study = Called()
+        self.asked: list[tuple[str, str, str, Callable[[], None]]] = []
         self.held: InView | None = None  # what the 3-D view shows for a picture
         self.times: list[float] = []  # that it showed for pictures
         self.shows_mode = False
@@ -91,6 +93,9 @@ class FakeWindow:
 
     def say(self, title: str, body: str) -> None:
         self.said.append((title, body))
+
+    def ask(self, title: str, words: str, yes: str, act: Callable[[], None]) -> None:
+        self.asked.append((title, words, yes, act))
 
     def show_faults(self, title: str, faults: ConfigError) -> None:
         self.faults.append((title, faults))

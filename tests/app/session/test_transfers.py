@@ -8,8 +8,10 @@ from typing import Any
 
 import pytest
 
+from app.runs.project import Project, project_text
 from app.runs.request import Request
 from app.runs.storage import state_text
+from app.runs.study_choice import StudyChoice
 from app.session.transfers import STORED, Transfers
 from model.config.config import Config
 from model.config.config_files import load_config, parse_config
@@ -114,6 +116,27 @@ def test_an_uploaded_run_becomes_the_baseline_or_is_refused_with_a_word(rig: Rig
     rig.wait()
     assert rig.window.titles == ["No run"]
     assert len(rig.workspace.calls) == 1
+
+
+def test_an_uploaded_project_is_opened_at_once_after_a_question_or_not_at_all(rig: Rig) -> None:
+    project = Project(FASTER, (), (), (), None, StudyChoice())
+    content = project_text(project).encode()
+    rig.workspace.at_hand = ""
+    rig.transfers.take_project("mine.trackride", content)
+    rig.wait()
+    assert [name for name, *_ in rig.workspace.calls] == ["open_project"]
+    rig.workspace.at_hand = "3 kept runs"
+    rig.transfers.take_project("mine.trackride", content)
+    rig.wait()
+    assert len(rig.workspace.calls) == 1
+    title, words, _, act = rig.window.asked[-1]
+    assert (title, words) == ("Open mine.trackride?", "It takes the place of 3 kept runs. Your presets stay.")
+    act()
+    assert len(rig.workspace.calls) == 2
+    rig.transfers.take_project("bad.trackride", content.replace(b"22.0", b"2200.0"))
+    rig.wait()
+    assert "shown: drive.speed_kmh" in str(rig.window.faults[-1][1])
+    assert len(rig.workspace.calls) == 2
 
 
 # ── What the browser remembers ──
