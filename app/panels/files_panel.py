@@ -12,6 +12,7 @@ from app.files.pictures import SIZES
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.runs.project import SUFFIX
+from model.analysis.channels import CHANNELS, USUAL
 
 PICTURE = "picture"
 FIGURE_BUTTONS = {"PNG": "figure.png", "SVG": "figure.svg", "Report": "report"}  # shown -> what is exported
@@ -50,9 +51,14 @@ class FilesPanel:
             data = gui.add_button_group(
                 "Data",
                 tuple(DATA_BUTTONS),
-                hint="CSV: motion and loads as a table. NPZ: the whole run, which Import takes back as a baseline. "
-                "YAML: the configuration, to be imported or run from the command line.",
+                hint="CSV: a table, with the columns that are ticked below. NPZ: the whole run, which Import takes "
+                "back as a baseline. YAML: the configuration, to be imported or run from the command line.",
             )
+            with gui.add_folder("Columns of the CSV", expand_by_default=False):
+                self._channels: dict[str, Any] = {
+                    name: gui.add_checkbox(channel.label, name in USUAL, hint=channel.what)
+                    for name, channel in CHANNELS.items()
+                }
             moving = gui.add_button_group(
                 "In motion",
                 tuple(MOTION_BUTTONS),
@@ -116,6 +122,11 @@ class FilesPanel:
     @property
     def transparent(self) -> bool:
         return self._transparent.value
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Columns of a CSV file, beside the time."""
+        return tuple(name for name, box in self._channels.items() if box.value)
 
     @property
     def movie(self) -> MovieChoice:

@@ -1,4 +1,7 @@
-"""Plots for pages: light and dark, as SVG or PNG, with matplotlib but without its global state."""
+"""Plots for pages: light and dark, as SVG or PNG, with matplotlib but without its global state.
+
+But for one setting, which nothing changes later: in SVG files text is text, that can be searched, copied and edited.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,7 @@ from importlib.metadata import version
 from typing import Any
 
 import numpy as np
+from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -16,6 +20,9 @@ from app.format.colours import Palette, wheel_palette
 from app.plots.curves import Curve, Peak, Plot
 from model.dynamics.vehicle import System
 
+rcParams["svg.fonttype"] = "none"
+FONT = "font-family: 'DejaVu Sans'"  # of formulas, as matplotlib writes it
+FALLBACK = f"{FONT}, Verdana, sans-serif"  # nearly as wide, where there is no DejaVu Sans
 DPI = 200  # of a PNG
 WIDTH, HEIGHT = 9.6, 2.6  # inches, of a plot on a page
 LEFT, RIGHT, ABOVE, BELOW = 0.5, 0.12, 0.32, 0.5  # inches around a plot, for its numbers and names
@@ -90,7 +97,8 @@ def file_of(figure: Figure, title: str, suffix: str) -> bytes:
     maker = {".png": "Software", ".svg": "Creator"}[suffix]
     file = io.BytesIO()
     figure.savefig(file, format=suffix[1:], metadata={"Title": title, maker: stamp()})
-    return file.getvalue()
+    content = file.getvalue()
+    return content.replace(FONT.encode(), FALLBACK.encode()) if suffix == ".svg" else content
 
 
 def panels(figure: Figure, rows: int, columns: int) -> list[Axes]:

@@ -29,6 +29,7 @@ from app.runs.project import Project, project_text
 from app.runs.request import Request
 from app.session.background import Job, JobQueue
 from app.session.window import InView, Window
+from model.analysis.channels import run_csv
 from model.config.config_files import dump_config
 from model.simulation.trajectory import Trajectory
 
@@ -66,6 +67,7 @@ class Download:
     background: str  # CSS
     dark: bool
     movie: MovieChoice
+    channels: tuple[str, ...]  # of a CSV file
     time: float  # where in the run the playback is, s
     drive: DriveState | None  # `run` is its past
     mode_shown: bool  # a mode swings in the place of the run
@@ -81,6 +83,11 @@ class Download:
         name = run_name(self.request.base, self.run.config)
         whole = name if name == self.request.base.name else f"{self.request.base.name}: {name}"
         return f"{whole}, {self.stretch}" if self.stretch else whole
+
+    @property
+    def baseline_title(self) -> str:
+        """What was changed in it; empty without one."""
+        return "" if self.baseline is None else run_name(self.request.base, self.baseline.config)
 
     @property
     def in_view(self) -> InView:
@@ -127,8 +134,8 @@ class Downloads:
             "figure.png": Export("Figure (PNG)", drawn, partial(self._figure, ".png")),
             "figure.svg": Export("Figure (SVG)", drawn, partial(self._figure, ".svg")),
             "movie": Export("Movie", drawn, self._movie),
-            "run.csv": Export("CSV", made, partial(self._run, ".csv")),
-            "run.npz": Export("NPZ", made, partial(self._run, ".npz")),
+            "run.csv": Export("CSV", made, self._csv),
+            "run.npz": Export("NPZ", made, self._npz),
             "yaml": Export("YAML", made, self._yaml),
             "replay": Export("Replay", made, self._replay),
             "report": Export("Report", made, self._report),
@@ -218,9 +225,12 @@ class Downloads:
         page = stamped_figure(download.run, download.baseline, picture, download.title, suffix, download.time)
         return download.name("figure", suffix), page
 
-    def _run(self, suffix: str, download: Download, job: Job) -> tuple[str, bytes]:
+    def _csv(self, download: Download, job: Job) -> tuple[str, bytes]:
         run = download.run if download.drive is None else download.drive.past_from_start
-        return download.name("", suffix), run.to_bytes(suffix)
+        return download.name("", ".csv"), run_csv(run, download.channels)
+
+    def _npz(self, download: Download, job: Job) -> tuple[str, bytes]:
+        return download.name("", ".npz"), download.run.to_bytes(".npz")
 
     def _yaml(self, download: Download, job: Job) -> tuple[str, bytes]:
         return download.name("", ".yaml"), dump_config(download.run.config).encode()
@@ -230,7 +240,13 @@ class Downloads:
 
         road = None if download.drive is None else download.drive.road
         page = replay_html(
-            download.run, download.baseline, download.title, download.dark, should_stop=job.stopped, road=road
+            download.run,
+            download.baseline,
+            download.title,
+            download.dark,
+            should_stop=job.stopped,
+            road=road,
+            baseline_title=download.baseline_title,
         )
         if page is None:
             raise StoppedError

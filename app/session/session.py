@@ -552,6 +552,7 @@ class Session:
             background=self._window.background,
             dark=self._window.dark,
             movie=files.movie,
+            channels=files.channels,
             time=time,
             drive=self._good.state if isinstance(self._good, Driven) else None,
             mode_shown=self._window.shows_mode,

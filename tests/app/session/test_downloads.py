@@ -21,6 +21,7 @@ from app.runs.drive import Driver
 from app.runs.request import Request
 from app.session.downloads import AT_REST, MOST, NO_RUN, PAUSE_FIRST, SHOWN_AFTER, Download, Downloads, duration_words
 from app.session.window import InView
+from model.analysis.channels import USUAL
 from model.config.config_files import load_config, parse_config
 from model.simulation.trajectory import Trajectory
 from tests.app.conftest import PATIENCE, Tab, make_run, wait_for
@@ -84,6 +85,7 @@ class Rig:
             background="#ffffff",
             dark=False,
             movie=SHORT,
+            channels=USUAL,
             time=1.0,
             drive=None,
             mode_shown=False,
@@ -120,7 +122,8 @@ def test_data_is_named_after_preset_and_change_and_holds_the_run(rig: Rig) -> No
     name, content = rig.send("run.npz")
     assert name == "paper-vehicle_speed-22-km-h.npz"
     assert Trajectory.load(io.BytesIO(content), name).config == FASTER.config()
-    assert rig.send("run.csv")[1].startswith(b"t [s],")
+    assert rig.send("run.csv")[1] == rig.run.to_bytes(".csv")
+    assert rig.send("run.csv", channels=("seat",))[1].startswith(b"t [s],seat forward acceleration [m/s2],")
 
 
 def test_a_figure_is_made_with_a_picture_of_the_vehicle_or_without(rig: Rig, monkeypatch: pytest.MonkeyPatch) -> None:
