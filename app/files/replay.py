@@ -23,8 +23,10 @@ from model.simulation.trajectory import Trajectory
 
 RATE = 25.0  # frames a second
 LONGEST = 30.0  # s of a run that are recorded: for each about 0.3 megabytes, with a ghost 0.4
+SIGN = "display: inline-block; margin-right: 0.6em; vertical-align: middle"
 DISC = "width: 0.9em; height: 0.9em; border-radius: 50%; opacity: 0.7; background:"  # CSS, before a colour
 RING = "width: 0.7em; height: 0.7em; border-radius: 50%; border: 0.16em solid"
+INK = {False: "#2b2f33", True: "#e6e9ec"}  # of texts, in the light look and in the dark one
 TYPE = "font: 13px/1.6 system-ui, sans-serif"
 WINDOW = (1600, 900)  # pixels, whose shape the view is fitted to
 
@@ -61,7 +63,7 @@ def replay_html(
     road: Road | None = None,
     baseline_title: str = "",
 ) -> str | None:
-    """A standalone page in which the run plays, can be scrubbed and looked at from all sides, with a key to its colours.
+    """A standalone page with a key to its colours, in which the run plays, can be scrubbed and seen from all sides.
 
     baseline: another run, which goes along as a ghost. Titles: plain text; the run's stands above the view and is the
     page's name, the baseline's stands in the key.
@@ -136,25 +138,22 @@ def _key(run: Trajectory, baseline_title: str | None, dark: bool) -> str:
     rows = (
         element(
             "div",
-            element(
-                "i", style=f"display: inline-block; margin-right: 0.6em; vertical-align: middle; {sign} rgb{colour}"
-            ),
+            element("i", style=f"{SIGN}; {sign} rgb{colour}"),
             words,
         )
         for sign, colour, words in told
     )
-    ink = "#e6e9ec" if dark else "#2b2f33"
-    look = f"position: fixed; left: 1.2em; bottom: 1.2em; z-index: 5; pointer-events: none; color: {ink}; {TYPE}"
+    place = "position: fixed; left: 1.2em; bottom: 1.2em; z-index: 5; pointer-events: none"
+    look = f"{place}; color: {INK[dark]}; {TYPE}"
     return str(element("div", *rows, style=look, class_="trackride-key"))
 
 
 def _titled(page: str, title: str, dark: bool, key: str) -> str:
     """The page with its name in the browser's tab and over the view, and the key in its corner."""
     text = html.escape(title)
-    colour = "#e6e9ec" if dark else "#2b2f33"
     caption = (
         f'<div style="position: fixed; top: 0.8em; left: 1.2em; right: 1.2em; z-index: 5; pointer-events: none; '
-        f'text-align: center; font: 500 15px system-ui, sans-serif; color: {colour}">{text}</div>'
+        f'text-align: center; font: 500 15px system-ui, sans-serif; color: {INK[dark]}">{text}</div>'
     )
     head, body = page.split("<title>Viser</title>", 1)
     body, end = body.rsplit("</body>", 1)
