@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from model.analysis.ride import Summary
     from model.simulation.trajectory import Trajectory
 
+CHANNELS_HELP = "Columns of a .csv, some of motion,loads,traction,travel,seat,arms; the first three if left out."
 RUN_SUFFIXES, PAGE_SUFFIXES = (".npz", ".csv"), (".html",)
 
 cli = typer.Typer(
@@ -127,6 +128,7 @@ def run(
     config: ConfigArgument = "paper",
     changes: SetOption = None,
     out: Annotated[Path | None, typer.Option(help="Where to write the run: a name ending in .npz or .csv.")] = None,
+    channels: Annotated[str | None, typer.Option(help=CHANNELS_HELP)] = None,
 ) -> None:
     """Run a configuration without a browser, and print its figures.
 
@@ -136,12 +138,19 @@ def run(
     chosen = configuration(config, changes)
     if out is not None:
         check_writable(out, RUN_SUFFIXES)
+    columns = _channels(channels, out)
     compile_for(chosen)
+    from model.analysis.channels import run_csv
+    from model.files import write_whole
+
     with interrupt() as interrupted:
         trajectory = simulated(chosen, interrupted)
         if out is not None:
             with writing(out):
-                trajectory.save(out)
+                if columns:
+                    write_whole(out, run_csv(trajectory, columns))
+                else:
+                    trajectory.save(out)
     _report(trajectory)
     _leave_unless_complete(trajectory, out, interrupted())
 
@@ -222,6 +231,21 @@ def paper(
             for name, content in files.items():
                 write_whole(out / name, content)
     output.print(f"The page is {out / 'index.html'}; its figures are beside it.", markup=False, soft_wrap=True)
+
+
+def _channels(text: str | None, out: Path | None) -> list[str]:
+    """The columns that are asked for; none: the usual ones. Leaves where they cannot be."""
+    if text is None:
+        return []
+    if out is None or out.suffix != ".csv":
+        fail("--channels are columns of a table; give --out a name that ends in .csv")
+    from model.analysis.channels import CHANNELS
+
+    names = [name.strip() for name in text.split(",")]
+    unknown = [name for name in names if name not in CHANNELS]
+    if unknown:
+        fail(f"--channels {text}: {unknown[0]!r} is none; give some of {','.join(CHANNELS)}")
+    return names
 
 
 def _report(trajectory: Trajectory) -> None:

@@ -785,6 +785,14 @@ if (!window.trackrideStudy) {
       if (taken[kind] !== text) study.take(kind, JSON.parse(taken[kind] = text));
     }
   });
+  let opened = '0';  // count of the newest choice that a project has brought
+  customElements.define('trackride-study-choice', class extends HTMLElement {
+    connectedCallback() {
+      if (this.getAttribute('count') === opened) return;  // viser has drawn the page anew
+      opened = this.getAttribute('count');
+      choose(JSON.parse(this.getAttribute('at')));
+    }
+  });
   const hideBoxes = () => sayBoxes().forEach((box) => { box.style.display = 'none'; });
   const hide = () => {
     hideBoxes();

@@ -1,9 +1,8 @@
-"""Pictures of the 3-D view: PNG files, and the frames of movies."""
+"""Pictures of the 3-D view, drawn by the browser."""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterator
 from typing import Any, Protocol
 
 import numpy as np
@@ -16,9 +15,6 @@ SIZES = {
     "3840 × 2160": (3840, 2160),
 }
 FIGURE_SIZE = (1600, 900)  # px of the picture in a figure
-MOVIE_SIZE = (1280, 720)  # px
-MOVIE_RATE = 20.0  # frames a second
-MOVIE_LENGTH = 4.0  # s at most
 RENDER_TIMEOUT = 20.0  # s; a hidden tab never answers
 
 
@@ -59,23 +55,13 @@ def take_picture(browser: Browser, width: int, height: int, background: str | No
 
     Raises NoPictureError when the tab is hidden, closed or cannot render so large a picture.
     """
-    picture = Image.fromarray(_render(browser, width, height, "png"))
+    picture = Image.fromarray(render(browser, width, height, "png"))
     if picture.mode == "RGBA" and background is not None:
         opaque = Image.new("RGBA", picture.size, background)
         picture = Image.alpha_composite(opaque, picture).convert("RGB")
     file = io.BytesIO()
     picture.save(file, "PNG")
     return file.getvalue()
-
-
-def movie_frames(browser: Browser, seek: Callable[[float], None], start: float, end: float) -> Iterator[np.ndarray]:
-    """Pixels (H, W, 3) of each frame from `start` to `end`, s of the run; `seek` shows a time. Waits for the browser.
-
-    Raises NoPictureError like take_picture.
-    """
-    for frame in range(round((end - start) * MOVIE_RATE)):
-        seek(start + frame / MOVIE_RATE)
-        yield _render(browser, *MOVIE_SIZE, "jpeg")
 
 
 def framed(fov: float, page_aspect: float, picture_aspect: float) -> float:
@@ -86,7 +72,11 @@ def framed(fov: float, page_aspect: float, picture_aspect: float) -> float:
     return float(2 * np.arctan(np.tan(fov / 2) * page_aspect / picture_aspect))
 
 
-def _render(browser: Browser, width: int, height: int, kind: str) -> np.ndarray:
+def render(browser: Browser, width: int, height: int, kind: str) -> np.ndarray:
+    """Pixels (H, W, 3) of the 3-D view for the kind "jpeg"; for "png" (H, W, 4), the last channel how opaque they are.
+
+    Raises NoPictureError like take_picture.
+    """
     viewpoint = browser.camera
     try:
         return browser.get_render(

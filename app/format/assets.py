@@ -7,7 +7,8 @@ from importlib import resources
 
 EXPLORER = (  # what its page needs
     *("head.html", "icon.svg", "page.js", "page.css", "address.js", "parameters.js", "parameters.css"),
-    *("plots.js", "plots.css", "study.js", "study.css", "runs.js", "runs.css", "wheel.css", "modal.css", "modal.js"),
+    *("plots.js", "plots.css", "study.js", "study.css", "runs.js", "runs.css", "exports.css", "wheel.css"),
+    *("modal.css", "modal.js"),
 )
 
 

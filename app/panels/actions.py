@@ -98,6 +98,9 @@ class Actions(Protocol):
     def upload_run(self, name: str, content: bytes) -> None:
         """Make the run in an NPZ file the baseline."""
 
+    def upload_project(self, name: str, content: bytes) -> None:
+        """Open a project, after a question where that would lose something."""
+
     def rename(self, name: str) -> None:
         """Name the run that is shown, and keep it."""
 
@@ -182,9 +185,10 @@ class Actions(Protocol):
     # Downloads
 
     def export(self, what: str) -> None:
-        """Make a file and let the browser download it; what: a key of app.session.transfers.Transfers."""
+        """Make a file and let the browser download it; what: a key of app.session.downloads.Downloads."""
 
-    def cancel_export(self) -> None: ...
+    def cancel_export(self, number: int) -> None:
+        """Make the file of this number (app/panels/export_list.py) no more."""
 
     # What the page itself tells
 

@@ -7,15 +7,18 @@ from typing import Any
 
 import viser
 
-from app.files.pictures import MOVIE_LENGTH, MOVIE_RATE, SIZES
+from app.files.movie_frames import FROM_START, LENGTHS, RATE, MovieChoice
+from app.files.pictures import SIZES
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
+from app.runs.project import SUFFIX
+from model.analysis.channels import CHANNELS, USUAL
 
 PICTURE = "picture"
-FIGURE_BUTTONS = {"PNG": "figure.png", "SVG": "figure.svg"}  # shown -> what is exported
+FIGURE_BUTTONS = {"PNG": "figure.png", "SVG": "figure.svg", "Report": "report"}  # shown -> what is exported
 DATA_BUTTONS = {"CSV": "run.csv", "NPZ": "run.npz", "YAML": "yaml"}
+PROJECT = "project"
 MOTION_BUTTONS = {"Replay": "replay", "Movie": "movie"}
-CANCEL = "Cancel"
 SAVE, EDIT = "Save preset", "Edit YAML"
 
 
@@ -32,7 +35,9 @@ class FilesPanel:
                 hint="An address that opens this vehicle, road, baseline and view in anybody's explorer",
                 icon=viser.Icon.LINK,
             )
-            self._size = gui.add_dropdown("Picture size", tuple(SIZES), hint="Of screenshots: pixels, width × height")
+            self._size = gui.add_dropdown(
+                "Picture size", tuple(SIZES), hint="Of screenshots and movies: pixels, width × height"
+            )
             self._transparent = gui.add_checkbox(
                 "Transparent", False, hint="Screenshots show vehicle and road without sky and ground"
             )
@@ -40,21 +45,38 @@ class FilesPanel:
             figure = gui.add_button_group(
                 "Figure",
                 tuple(FIGURE_BUTTONS),
-                hint="One page to take home: the 3-D view, the plots with their baseline, all figures and parameters",
+                hint="PNG, SVG: one page to take home, with 3-D view, plots, figures and parameters. Report: all of it "
+                "at length as one HTML file. Both compare with the baseline.",
             )
             data = gui.add_button_group(
                 "Data",
                 tuple(DATA_BUTTONS),
-                hint="CSV: motion and loads as a table. NPZ: the whole run, which Import takes back as a baseline. "
-                "YAML: the configuration, to be imported or run from the command line.",
+                hint="CSV: a table, with the columns that are ticked below. NPZ: the whole run, which Import takes "
+                "back as a baseline. YAML: the configuration, to be imported or run from the command line.",
             )
+            with gui.add_folder("Columns of the CSV", expand_by_default=False):
+                self._channels: dict[str, Any] = {
+                    name: gui.add_checkbox(channel.label, name in USUAL, hint=channel.what)
+                    for name, channel in CHANNELS.items()
+                }
             moving = gui.add_button_group(
                 "In motion",
-                (*MOTION_BUTTONS, CANCEL),
-                hint="Replay: the run as one HTML file that plays in any browser, in a few seconds. Movie: "
-                f"{MOVIE_LENGTH:g} s of the 3-D view from the present time on. The page draws each of its "
-                f"{MOVIE_LENGTH * MOVIE_RATE:.0f} frames anew and must stay in front: without a graphics card that can "
-                "take three minutes. Cancel: stop making either.",
+                tuple(MOTION_BUTTONS),
+                hint="Replay: the run as one HTML file that plays in any browser, in a few seconds. Movie: of the 3-D "
+                f"view. The page draws each of its {RATE:g} frames a second anew and must stay in front: without a "
+                "graphics card a second of the movie can take a minute.",
+            )
+            self._length = gui.add_dropdown("Movie length", tuple(LENGTHS), hint="Of the run that is filmed, at most")
+            self._start = gui.add_dropdown(
+                "Movie from", tuple(FROM_START), hint="Where in the run the movie begins: at the time shown, or at 0 s"
+            )
+            self._stamped = gui.add_checkbox(
+                "Time stamp", False, hint="Movies say time, vehicle and speed in their lower left corner"
+            )
+            project = gui.add_button(
+                "Save project",
+                hint="One file for all that is here: kept runs with their names, baseline, your presets, what is shown "
+                "and the choices of the Study tab. Import opens it again.",
             )
         with into:
             name: Any = gui.add_text("Preset name", "", hint="A name for the present parameters")
@@ -74,6 +96,11 @@ class FilesPanel:
                 mime_type=".npz",
                 hint="An NPZ file, such as Data saves: it is compared with what is shown",
             )
+            opened = gui.add_upload_button(
+                "Open a project",
+                mime_type=SUFFIX,
+                hint="A file that Save project has made: it takes the place of runs, baseline and parameters",
+            )
         link.on_click(by_user(lambda event: actions.copy_link(), fail))
         picture.on_click(by_user(lambda event: actions.export(PICTURE), fail))
         for group, buttons in ((figure, FIGURE_BUTTONS), (data, DATA_BUTTONS), (moving, MOTION_BUTTONS)):
@@ -83,23 +110,32 @@ class FilesPanel:
         config.on_upload(
             by_user(lambda event: actions.upload_configuration(config.value.name, config.value.content), fail)
         )
+        project.on_click(by_user(lambda event: actions.export(PROJECT), fail))
+        opened.on_upload(by_user(lambda event: actions.upload_project(opened.value.name, opened.value.content), fail))
         run.on_upload(by_user(lambda event: actions.upload_run(run.value.name, run.value.content), fail))
 
     @property
     def size(self) -> tuple[int, int]:
-        """Of pictures, px."""
+        """Of pictures and movies, px."""
         return SIZES[self._size.value]
 
     @property
     def transparent(self) -> bool:
         return self._transparent.value
 
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Columns of a CSV file, beside the time."""
+        return tuple(name for name, box in self._channels.items() if box.value)
+
+    @property
+    def movie(self) -> MovieChoice:
+        """What is filmed."""
+        return MovieChoice(LENGTHS[self._length.value], FROM_START[self._start.value], self._stamped.value)
+
 
 def _exporting(actions: Actions, buttons: dict[str, str]) -> Callable[[Any], None]:
     def act(event: Any) -> None:
-        if event.target.value == CANCEL:
-            actions.cancel_export()
-        else:
-            actions.export(buttons[event.target.value])
+        actions.export(buttons[event.target.value])
 
     return act

@@ -7,7 +7,6 @@ from typing import Any
 import viser
 
 NOTIFICATION_TIME = 10.0  # s that a notification stays
-PROGRESS = "progress"
 
 
 class Notifications:
@@ -35,15 +34,3 @@ class Notifications:
         notice = self._shown.pop(kind, None)
         if notice is not None:
             notice.remove()
-
-    def progress(self, doing: str) -> None:
-        """Say what is being made; empty: nothing."""
-        notice = self._shown.get(PROGRESS)
-        if not doing:
-            self.forget(PROGRESS)
-        elif notice is not None:
-            notice.body = doing
-        else:
-            self._shown[PROGRESS] = self._client.add_notification(
-                "One moment", doing, loading=True, with_close_button=False, auto_close_seconds=None
-            )

@@ -10,7 +10,7 @@ import viser
 
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
-from app.panels.files_panel import DATA_BUTTONS, FIGURE_BUTTONS, MOTION_BUTTONS
+from app.panels.files_panel import DATA_BUTTONS, FIGURE_BUTTONS, MOTION_BUTTONS, PROJECT
 from app.panels.parameter_panel import BOXED
 from app.panels.plot_panel import TABS
 from model.config.config import Config
@@ -33,6 +33,7 @@ def add_palette(gui: viser.GuiApi, presets: Mapping[str, Config], actions: Actio
     for group, buttons in EXPORTS.items():
         for name, what in buttons.items():
             add(f"{group}: {name}", "Export", partial(actions.export, what))
+    add("Save project", "Export", partial(actions.export, PROJECT))
     for name, preset in presets.items():
         add(preset.name, "Preset", partial(actions.load, name))
 

@@ -35,6 +35,7 @@ class StudyPanel:
             says = self._add_box(gui)
             self._data = {view: gui.add_html("") for view in VIEWS}
         self._strips = gui.add_html("")
+        self._choice, self._choices = gui.add_html(""), 0
         offer = {
             "choice": StudyChoice().__dict__,
             "figures": [FigureUnit(name, KILONEWTON).data for name in figure_names()],
@@ -60,6 +61,12 @@ class StudyPanel:
         told = element("trackride-study-data", of=kind, at=json.dumps(data, ensure_ascii=False, allow_nan=False))
         for place in (self._data[kind], *((self._strips,) if kind == PROFILER else ())):
             place.content = str(told)
+
+    def choose(self, choice: StudyChoice) -> None:
+        """Have the page take this choice, which it tells then."""
+        self._choices += 1
+        at = json.dumps(choice.__dict__, ensure_ascii=False)
+        self._choice.content = str(element("trackride-study-choice", at=at, count=str(self._choices)))
 
     def _take(self, text: str) -> None:
         """What the page tells: a choice, or the value of a parameter, as shown."""

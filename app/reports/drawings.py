@@ -1,4 +1,7 @@
-"""Plots for pages: light and dark, as SVG or PNG, with matplotlib but without its global state."""
+"""Plots for pages: light and dark, as SVG or PNG, with matplotlib but without its global state.
+
+But for one setting, which nothing changes later: in SVG files text is text, that can be searched, copied and edited.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +9,10 @@ import io
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
+from typing import Any
 
 import numpy as np
+from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -15,12 +20,16 @@ from app.format.colours import Palette, wheel_palette
 from app.plots.curves import Curve, Peak, Plot
 from model.dynamics.vehicle import System
 
+rcParams["svg.fonttype"] = "none"
+FONT = "font-family: 'DejaVu Sans'"  # of formulas, as matplotlib writes it
+FALLBACK = f"{FONT}, Verdana, sans-serif"  # nearly as wide, where there is no DejaVu Sans
 DPI = 200  # of a PNG
 WIDTH, HEIGHT = 9.6, 2.6  # inches, of a plot on a page
 LEFT, RIGHT, ABOVE, BELOW = 0.5, 0.12, 0.32, 0.5  # inches around a plot, for its numbers and names
 HEADROOM = 0.11  # of a plot's height, for the name of a mark
 SMALL = 8.5  # points
 NUMBER_ROOM = 0.15  # of a plot's height, above and below its curves, for the number of a peak
+LINES: dict[str, tuple[Any, float]] = {"static": ((0, (1, 1.6)), 1.0), "baseline": ((0, (3, 1.5)), 0.5)}  # and opacity
 NAMES = 0.6  # of a plot's width that its curves' names may take
 
 
@@ -88,7 +97,8 @@ def file_of(figure: Figure, title: str, suffix: str) -> bytes:
     maker = {".png": "Software", ".svg": "Creator"}[suffix]
     file = io.BytesIO()
     figure.savefig(file, format=suffix[1:], metadata={"Title": title, maker: stamp()})
-    return file.getvalue()
+    content = file.getvalue()
+    return content.replace(FONT.encode(), FALLBACK.encode()) if suffix == ".svg" else content
 
 
 def panels(figure: Figure, rows: int, columns: int) -> list[Axes]:
@@ -175,14 +185,16 @@ def draw_plot(axes: Axes, plot: Plot, look: Look) -> None:
     """One plot of the explorer: its curves over its axis, their names in their colours beside the title."""
     plain_axes(axes, look, f"{plot.title}, {plot.unit}", plot.axis)
     for curve, values in zip(plot.curves, plot.values.T, strict=True):
-        axes.plot(plot.x, values, color=curve.colour, lw=1.1, ls=(0, (1, 1.6)) if curve.kind == "static" else "-")
+        lines, alpha = LINES.get(curve.kind, ("-", 1.0))
+        axes.plot(plot.x, values, color=curve.colour, lw=1.1, ls=lines, alpha=alpha)
     mark_peaks(axes, [(peak, plot.curves[peak.curve].colour) for peak in plot.peaks], look)
     if plot.least is not None:
         low, high = axes.get_ylim()
         axes.set_ylim(min(low, plot.least[0]), max(high, plot.least[1]))
     axes.set_xlim(plot.x[0], max(plot.x[-1], plot.x[0] + 1e-3))
-    if len(plot.curves) > 1:
-        _name_curves(axes, plot.curves)
+    named = tuple(curve for curve in plot.curves if curve.kind != "baseline")
+    if len(named) > 1:
+        _name_curves(axes, named)
 
 
 def _name_curves(axes: Axes, curves: tuple[Curve, ...]) -> None:

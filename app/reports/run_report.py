@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from importlib.metadata import version
 from typing import NamedTuple
 
 from matplotlib.figure import Figure
 
-from app.format.differences import NONE, figure_text, row_texts
+from app.format.differences import NONE, change_text, figure_text, row_texts
 from app.format.file_names import file_name
 from app.format.load_unit import comparison_rows, heading
 from app.format.markup import Content, Html, element, formula_html, joined, words_html
@@ -23,7 +23,7 @@ from app.tabs.comfort import COMFORT_FIGURES, PLACES, ComfortFigure
 from app.tabs.modes import NOTE, moving
 from app.tabs.trust import balances, drift, work
 from model.analysis.comfort import Comfort, ride_comfort
-from model.analysis.figures import WHEEL_FIGURES, comparison
+from model.analysis.figures import WHEEL_FIGURES, Row, comparison, overall
 from model.analysis.modes import Modes, vehicle_modes
 from model.analysis.ride_warnings import warnings
 from model.analysis.signals import WHOLE, window
@@ -45,20 +45,39 @@ class RideRow(NamedTuple):
     label: str
     value: str
     unit: str
+    beside: str = ""  # the baseline's, and the change
 
 
-def report_page(run: Trajectory, source: str) -> str:
-    """The report as an HTML file. source: the name of the preset or file that was run. It needs one sample."""
+def report_page(
+    run: Trajectory,
+    source: str,
+    baseline: Trajectory | None = None,
+    on_progress: Callable[[float], None] = lambda part: None,
+) -> str:
+    """The report as an HTML file. source: the name of the preset or file that was run. It needs one sample.
+
+    baseline: a run that it is compared with; both need a sample. on_progress: called with the share that is done, 0…1,
+    several times; what it raises ends the work.
+    """
     config, modes = run.config, vehicle_modes(run.config)
+    drawings = run_drawings(run, modes, baseline)
+    pictures: list[Html] = []
+    for drawing in drawings:
+        on_progress(len(pictures) / (len(drawings) + 1))
+        pictures.append(picture(drawing))
+    on_progress(len(drawings) / (len(drawings) + 1))
+    compared = None if baseline is None else baseline.config
     sections = [
         _early_end(run),
         element("p", config.description) if config.description else Html(),
+        *_which_baseline(config, compared),
         picture(vehicle_drawing(run), _picture_words(run), ".png"),
-        element("dl", *(_tile(row) for row in ride_rows(run))),
+        element("dl", *(_tile(row) for row in ride_rows(run, baseline))),
         element("h2", "Warnings"),
         _warnings(run),
+        *_comparison(run, baseline),
         element("h2", "The run over time"),
-        *(picture(drawing) for drawing in run_drawings(run, modes)),
+        *pictures,
         element("h2", "Ride comfort"),
         _comfort(run),
         element("h2", "Natural frequencies and modes"),
@@ -70,14 +89,56 @@ def report_page(run: Trajectory, source: str) -> str:
         element("h2", "Can the computation be trusted?"),
         _checks(run),
         element("h2", "Repeat it"),
-        *_repeat(config, source),
+        *_repeat(config, source, compared),
     ]
     return document(config.name, MODEL, sections)
 
 
-def ride_rows(run: Trajectory) -> list[RideRow]:
+def ride_rows(run: Trajectory, baseline: Trajectory | None = None) -> list[RideRow]:
     """The ride figures of the whole vehicle, as they stand at the head of the report."""
-    return [RideRow(row.figure, figure_text(row.now), row.unit) for row in comparison(run, None) if not row.wheel]
+    return [
+        RideRow(row.figure, figure_text(row.now), row.unit, _beside(row))
+        for row in comparison(run, baseline)
+        if not row.wheel
+    ]
+
+
+def _beside(row: Row) -> str:
+    """ "baseline 1.35, +13 %"."""
+    if row.baseline is None:
+        return ""
+    change = "" if row.change is None else f", {change_text(row.change)}"
+    return f"baseline {row_texts(row)[1]}{change}"
+
+
+def _which_baseline(config: Config, baseline: Config | None) -> Iterator[Html]:
+    """What the run is compared with, and what differs between the two."""
+    if baseline is None:
+        return
+    said = f"Beside the baseline, {baseline.name}: pale dashed curves, and a table with all changes."
+    yield element("p", said)
+    now, before = config.values(), baseline.values()
+    keys = [key for key in PARAMETER if now.get(key) != before.get(key) and PARAMETER[key].group != NOTES]
+    rows = [[*_parameter(config, key, now.get(key)), _value(baseline, key, before.get(key))] for key in keys]
+    if rows:
+        yield wide_table(("Parameter", "Symbol", "Here", "In the baseline"), rows, "facts")
+    else:
+        yield element("p", "Both have the same parameters.")
+
+
+def _comparison(run: Trajectory, baseline: Trajectory | None) -> Iterator[Html]:
+    """All figures of both runs: of a figure of each wheel the worst wheel, or all road wheels together."""
+    if baseline is None:
+        return
+    told = comparison_rows(run, baseline)
+    rows = [(row, row.figure) for row in told if not row.wheel]
+    rows += [(of.row, f"{of.row.figure}, {of.row.wheel or 'road wheels together'}") for of in overall(told)]
+    yield element("h2", "Beside the baseline")
+    yield wide_table(
+        ("Figure", "Unit", "Here", "Baseline", "Change"),
+        [[name, row.unit, *row_texts(row), change_text(row.change)] for row, name in rows],
+        "numbers",
+    )
 
 
 def vehicle_drawing(run: Trajectory) -> Drawing:
@@ -90,26 +151,26 @@ def vehicle_drawing(run: Trajectory) -> Drawing:
     return Drawing("The vehicle on its road", WIDTH, 3.9, draw)
 
 
-def run_drawings(run: Trajectory, modes: Modes) -> list[Drawing]:
-    """All plots of a run: ride, loads, spectrum."""
+def run_drawings(run: Trajectory, modes: Modes, baseline: Trajectory | None = None) -> list[Drawing]:
+    """All plots of a run: ride, loads, spectrum; with the curves of a baseline."""
     found = named(excitation(run.config), modes)
 
     def plots(look: Look) -> list[Plot]:
         palette = look.palette(run.system)
-        return [*ride_plots(run, palette), *load_plots(run, palette)]
+        return [*ride_plots(run, palette, baseline), *load_plots(run, palette, baseline)]
 
     def drawing(number: int, title: str) -> Drawing:
         return plots_drawing(title, lambda look: [plots(look)[number]])
 
     drawings = [drawing(number, plot.title) for number, plot in enumerate(plots(LIGHT_LOOK))]
-    return [*drawings, spectrum_drawing(run, found)] if len(run.t) >= LEAST_SAMPLES else drawings
+    return [*drawings, spectrum_drawing(run, found, baseline)] if len(run.t) >= LEAST_SAMPLES else drawings
 
 
-def spectrum_drawing(run: Trajectory, found: tuple[Mark, ...]) -> Drawing:
+def spectrum_drawing(run: Trajectory, found: tuple[Mark, ...], baseline: Trajectory | None = None) -> Drawing:
     """The spectrum of the hull's acceleration, with frequencies to know."""
     return plots_drawing(
         "Spectrum of the hull's vertical acceleration",
-        lambda look: [spectrum_plot(run, look.palette(run.system).hull, found)],
+        lambda look: [spectrum_plot(run, look.palette(run.system).hull, found, baseline)],
         {mark.name: mark.frequency for mark in found},
     )
 
@@ -119,7 +180,8 @@ def _picture_words(run: Trajectory) -> str:
 
 
 def _tile(row: RideRow) -> Html:
-    return element("div", element("dt", row.label), element("dd", row.value, " ", element("small", row.unit)))
+    beside = [element("dd", row.beside, class_="beside")] if row.beside else []
+    return element("div", element("dt", row.label), element("dd", row.value, " ", element("small", row.unit)), *beside)
 
 
 def _early_end(run: Trajectory) -> Html:
@@ -201,7 +263,11 @@ def _parameters(config: Config) -> Iterator[Html]:
 
 def _parameter(config: Config, key: str, value: Value) -> list[Content]:
     parameter = config.parameter(key)
-    return [parameter.label, formula_html(parameter.symbol), value_text(parameter, value)]
+    return [parameter.label, formula_html(parameter.symbol), _value(config, key, value)]
+
+
+def _value(config: Config, key: str, value: Value) -> str:
+    return NONE if value is None else value_text(config.parameter(key), value)
 
 
 def _before(paper: Mapping[str, Value], key: str) -> str:
@@ -229,7 +295,7 @@ def _judgement(good: bool | None) -> Html:
     return element("span", " ✓", class_="good") if good else element("span", " !", class_="bad")
 
 
-def _repeat(config: Config, source: str) -> Iterator[Html]:
+def _repeat(config: Config, source: str, baseline: Config | None) -> Iterator[Html]:
     file = file_name(config, config.name, {}, "", ".yaml")
     yield element(
         "p",
@@ -239,3 +305,6 @@ def _repeat(config: Config, source: str) -> Iterator[Html]:
     commands = (f"trackride explore {file}", f"trackride report {file} --out report.html")
     yield element("pre", "\n".join(commands))
     yield element("details", element("summary", "The configuration as YAML"), element("pre", dump_config(config)))
+    if baseline is not None:
+        shown = element("summary", "The baseline as YAML"), element("pre", dump_config(baseline))
+        yield element("details", *shown)

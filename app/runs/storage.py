@@ -50,10 +50,10 @@ def state_text(
     return json.dumps(
         {
             "start": start.values(),
-            REQUEST: _request_values(request, request.config()),
+            REQUEST: request_values(request, request.config()),
             "presets": [preset.values() for preset in presets],
-            "runs": [_run_values(kept) for kept in runs],
-            "baseline": None if baseline is None else _run_values(baseline),
+            "runs": [run_values(kept) for kept in runs],
+            "baseline": None if baseline is None else run_values(baseline),
             "dark": dark,
         },
         default=part_values,  # of the roads that a sum is made of
@@ -71,34 +71,39 @@ def state_from(text: str) -> State:
     if not isinstance(state, dict):
         raise ValueError("it is no state of the explorer")
     return State(
-        start=_usable(_config, state.get("start")),
-        request=_usable(_request, state.get(REQUEST)),
-        presets=_all_usable(_config, state.get("presets"), PRESETS),
-        runs=_all_usable(_run, state.get("runs"), RUNS),
-        baseline=_usable(_run, state.get("baseline")),
+        start=_usable(config_from, state.get("start")),
+        request=_usable(request_from, state.get(REQUEST)),
+        presets=_all_usable(config_from, state.get("presets"), PRESETS),
+        runs=_all_usable(run_from, state.get("runs"), RUNS),
+        baseline=_usable(run_from, state.get("baseline")),
         dark=state.get("dark") if isinstance(state.get("dark"), bool) else None,
     )
 
 
-def _request_values(request: Request, config: Config) -> dict[str, Any]:
+def request_values(request: Request, config: Config) -> dict[str, Any]:
+    """A request for JSON; config: of the request."""
     return {"base": request.base.values(), "config": config.values()}
 
 
-def _run_values(kept: Kept) -> dict[str, Any]:
+def run_values(kept: Kept) -> dict[str, Any]:
+    """What is needed to make a kept run again, for JSON."""
     about = {"name": kept.given_name, "colour": kept.colour}
-    return about | _request_values(kept.request, kept.config)
+    return about | request_values(kept.request, kept.config)
 
 
-def _config(values: Any) -> Config:
+def config_from(values: Any) -> Config:
+    """A configuration of its values by key. Like the next two it raises one of BAD for what is none."""
     return Config().replace(values)
 
 
-def _request(values: Any) -> Request:
-    return first_request(_config(values["base"]), _config(values["config"]))
+def request_from(values: Any) -> Request:
+    """What `request_values` has given."""
+    return first_request(config_from(values["base"]), config_from(values["config"]))
 
 
-def _run(values: Any) -> Kept:
-    request, name, colour = _request(values), plain_name(str(values["name"])), values["colour"]
+def run_from(values: Any) -> Kept:
+    """What `run_values` has given, with the number 0."""
+    request, name, colour = request_from(values), plain_name(str(values["name"])), values["colour"]
     if colour not in RUN_COLOURS:
         raise ValueError("no colour of a run")
     config = request.config()

@@ -17,20 +17,23 @@ from typing import Any
 
 import viser
 
+from app.panels.files_panel import PROJECT
 from app.panels.road_parts import with_part, without_last
 from app.plots.study_data import Data
 from app.runs.history import REST
 from app.runs.playback import Playback, of_another_kind, time_to_look
+from app.runs.project import SUFFIX
 from app.runs.request import Driven, Failed, Finished, Outcome, Refused, Request, Simulate, first_request
 from app.runs.runner import Runner
 from app.runs.study_choice import StudyChoice
 from app.runs.tab_place import TabPlace
 from app.runs.turns import SHOWING
 from app.session.address import Address
+from app.session.downloads import Download, Downloads
 from app.session.error_log import Seldom, kind_of
 from app.session.studies import Studies
 from app.session.study_work import Record, Situation
-from app.session.transfers import Download, Transfers
+from app.session.transfers import Transfers
 from app.session.vehicle_view import VehicleView
 from app.session.window import Window
 from app.session.workspace import Workspace
@@ -98,6 +101,7 @@ class Session:
             raise
         self._workspace = Workspace(self._window, self._runner, self._presets)
         self._address = Address(self._window, self._workspace, presets)
+        self._downloads = Downloads(client, self, self._window)
         self._transfers = Transfers(client, self, self._window, self._workspace, run)
         self._record: Record | None = None  # measured, for studies
         self._studies = Studies(
@@ -314,16 +318,19 @@ class Session:
         self.post("preference", lambda: self._workspace.prefer_dark(dark))
 
     def export(self, what: str) -> None:
-        self.post("export", lambda: self._export(what))
+        self.post(f"export {what}", lambda: self._export(what))
 
-    def cancel_export(self) -> None:
-        self.post("cancel", lambda: self._transfers.stop())
+    def cancel_export(self, number: int) -> None:
+        self.post(f"cancel {number}", lambda: self._downloads.cancel(number))
 
     def upload_configuration(self, name: str, content: bytes) -> None:
         self.post("configuration", lambda: self._transfers.take_configuration(name, content))
 
     def upload_run(self, name: str, content: bytes) -> None:
         self.post("upload", lambda: self._transfers.take_run(name, content))
+
+    def upload_project(self, name: str, content: bytes) -> None:
+        self.post("project", lambda: self._transfers.take_project(name, content))
 
     def upload_profile(self, name: str, content: bytes) -> None:
         self.post("profile", lambda: self._transfers.take_profile(name, content))
@@ -387,11 +394,6 @@ class Session:
         self._wake.set()
         done.wait(SEEN_WITHIN)
 
-    def seek(self, time: float) -> None:
-        """Show a time of the run, and wait until it is seen. For background jobs only."""
-        self.scrub(time)
-        self.show_now(lambda: self._window.draw(time))
-
     def fail(self, error: Exception) -> None:
         log.error("in a session", exc_info=error)
         if self._errors.passes(kind_of(error)) is not None:
@@ -403,6 +405,7 @@ class Session:
         self._wake.set()
         self._runner.close()
         self._transfers.close()
+        self._downloads.close()
         self._thread.join()
         self._studies.close()  # now that nobody begins another one
 
@@ -511,6 +514,7 @@ class Session:
         if self._road_changed and isinstance(self._good, Finished) and now >= self._shown_at + REST:
             self._look_at_the_road(self._good.trajectory)
         self._workspace.tick(now)
+        self._downloads.tick(now)
         self._address.tick(now)
         self._window.mark_changes(self._workspace.present)
         self._study(now, driving)
@@ -570,22 +574,26 @@ class Session:
         if self._good is None or run is None or not len(run.t):
             return
         with self._lock:
-            time, playing = self._playback.time, self._playback.playing
-        self._transfers.send(
-            what,
-            Download(
-                request=self._good.request,
-                run=run,
-                baseline=self._workspace.baseline,
-                size=files.size,
-                transparent=files.transparent,
-                background=self._window.background,
-                dark=self._window.dark,
-                time=time,
-                playing=playing,
-                drive=self._good.state if isinstance(self._good, Driven) else None,
-            ),
+            time = self._playback.time
+        download = Download(
+            request=self._good.request,
+            run=run,
+            baseline=self._workspace.baseline,
+            beside=self._window.beside,
+            size=files.size,
+            transparent=files.transparent,
+            background=self._window.background,
+            dark=self._window.dark,
+            movie=files.movie,
+            channels=files.channels,
+            time=time,
+            drive=self._good.state if isinstance(self._good, Driven) else None,
+            mode_shown=self._window.shows_mode,
         )
+        if what == PROJECT:
+            self._downloads.send_project(download.name("", SUFFIX), self._workspace.project(self._studies.choice))
+        else:
+            self._downloads.send(what, download)
 
     def _edit_yaml(self) -> None:
         run = self.shown

@@ -1,36 +1,26 @@
-"""Downloads and uploads of one tab, and what its browser stores; the work is done in background jobs."""
+"""Uploads of one tab, and what its browser stores; the work is done in background jobs."""
 
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Protocol
 
-import numpy as np
 import viser
 
-from app.files.pictures import FIGURE_SIZE, MOVIE_LENGTH, MOVIE_RATE, NoPictureError, movie_frames, take_picture
 from app.files.uploads import ProfileQuestion, configuration, profile, profile_changes, question, run_from, text_in
-from app.format.file_names import file_name
-from app.panels.files_panel import PICTURE
-from app.runs.drive import DriveState
-from app.runs.history import run_name
-from app.runs.request import Request, Simulate
+from app.runs.project import project_from
+from app.runs.request import Simulate
 from app.runs.storage import State, state_from
 from app.session.background import BackgroundJob
 from app.session.window import Window
 from app.session.workspace import Workspace
 from model.config.config import Config, ConfigError, ProfileRoad
-from model.config.config_files import dump_config
 from model.config.profile_files import ProfileFile, Reading
 from model.simulation.trajectory import Trajectory
 
-AT_REST = ("figure.png", "figure.svg", "replay", "movie")  # these show one stretch of a drive and take a while to make
-PAUSE_FIRST = "Pause the drive first (Space): what is shown then, its last seconds, is what you download."
-NO_RUN = "A drive cannot be repeated from a file as a run can. Take CSV, or change from Drive to Run first."
 STORED = "trackride"  # key in the browser's storage
 STORAGE_PATIENCE = 60.0  # s that a browser has to tell what it has stored; after that we overwrite it
 
@@ -45,57 +35,7 @@ class DrawingThread(Protocol):
 
     def post(self, kind: str, act: Callable[[], None]) -> None: ...
 
-    def show_now(self, act: Callable[[], None]) -> None: ...
-
-    def seek(self, time: float) -> None: ...
-
-    def toggle(self) -> None: ...
-
     def fail(self, error: Exception) -> None: ...
-
-
-@dataclass(frozen=True)
-class Download:
-    """What a download is made of, as it was when the user asked for it."""
-
-    request: Request
-    run: Trajectory
-    baseline: Trajectory | None
-    size: tuple[int, int]  # px, of a picture
-    transparent: bool
-    background: str  # CSS
-    dark: bool
-    time: float  # where in the run the playback is, s
-    playing: bool
-    drive: DriveState | None  # `run` is its past
-
-    def name(self, detail: str, suffix: str) -> str:
-        """A name for the file."""
-        stretch = f"{detail} {self.stretch}".strip()
-        return file_name(self.run.config, self.request.base.name, self.request.changes, stretch, suffix)
-
-    @property
-    def title(self) -> str:
-        """A title for a page: what was run, and what was changed."""
-        name = run_name(self.request.base, self.run.config)
-        whole = name if name == self.request.base.name else f"{self.request.base.name}: {name}"
-        return f"{whole}, {self.stretch}" if self.stretch else whole
-
-    @property
-    def stretch(self) -> str:
-        """Which part of a drive it is; empty for a run."""
-        return "" if self.drive is None else f"drive {self.run.t[0]:.0f}–{self.run.t[-1]:.0f} s"
-
-    @property
-    def refusal(self) -> Mapping[str, str]:
-        """Which files cannot be made now, and why."""
-        if self.drive is None:
-            return {}
-        return {"run.npz": NO_RUN} | ({} if self.drive.stands else dict.fromkeys(AT_REST, PAUSE_FIRST))
-
-
-class StoppedError(Exception):
-    """No file was made; the message says why."""
 
 
 class Transfers:
@@ -113,24 +53,6 @@ class Transfers:
         self._simulate = simulate
         self._files, self._memory = BackgroundJob(drawing.fail), BackgroundJob(drawing.fail)
         self._profile: tuple[str, bytes] | None = None  # name and content of the last file with a profile
-        self._makers: dict[str, tuple[str, Callable[[Download], tuple[str, bytes]]]] = {
-            PICTURE: ("", self._picture),
-            "figure.png": ("Drawing the figure…", partial(self._figure, ".png")),
-            "figure.svg": ("Drawing the figure…", partial(self._figure, ".svg")),
-            "run.csv": ("", partial(self._run, ".csv")),
-            "run.npz": ("", partial(self._run, ".npz")),
-            "yaml": ("", self._yaml),
-            "replay": ("Recording the replay…", self._replay),
-            "movie": ("Filming…", self._movie),
-        }
-
-    def send(self, what: str, download: Download) -> None:
-        """Make a file, and let the browser download it."""
-        if what in download.refusal:
-            self._window.say("Nothing was downloaded", download.refusal[what])
-            return
-        doing, make = self._makers[what]
-        self._begin(partial(self._deliver, doing, partial(make, download)))
 
     def take_configuration(self, name: str, content: bytes) -> None:
         """Request the configuration in an uploaded file."""
@@ -173,12 +95,12 @@ class Transfers:
         """Make the run in an uploaded file the baseline."""
         self._begin(partial(self._unpack, name, content))
 
-    def stop(self) -> None:
-        """Stop making the file that is under way."""
-        self._files.stop()
+    def take_project(self, name: str, content: bytes) -> None:
+        """Open the project in an uploaded file."""
+        self._begin(partial(self._open, name, content))
 
     def close(self) -> None:
-        """End the jobs; wait for them, but not long for a browser that still draws a picture."""
+        """End the jobs."""
         self._files.close()
         self._memory.close()
 
@@ -197,110 +119,12 @@ class Transfers:
 
     def _begin(self, job: Callable[[], None]) -> None:
         if not self._files.start(job):
-            self._window.say("One at a time", "The last file is still being made. Cancel it, or wait a moment.")
+            self._window.say("One at a time", "The last file is still being read. Wait a moment.")
 
     def _say(self, title: str, body: str) -> None:
         self._drawing.post("said", lambda: self._window.say(title, body))
 
-    def _tell(self, doing: str) -> None:
-        self._drawing.post("progress", lambda: self._window.show_progress(doing))
-
-    # ── Out: on the thread of the job ──
-
-    def _deliver(self, doing: str, make: Callable[[], tuple[str, bytes]]) -> None:
-        if doing:
-            self._tell(doing)
-        try:
-            self._client.send_file_download(*make(), save_immediately=True)
-        except NoPictureError as error:
-            log.info("no picture: %s", error)
-            self._say("No picture", str(error))
-        except StoppedError as error:
-            self._say("Nothing was downloaded", str(error))
-        finally:
-            if doing:
-                self._tell("")
-
-    @contextmanager
-    def _held(self, download: Download) -> Iterator[None]:
-        """Meanwhile a run that plays stands at the time of the download, so that the picture shows that moment."""
-        if not download.playing or download.drive is not None:
-            yield
-            return
-        self._drawing.seek(download.time)
-        try:
-            yield
-        finally:
-            self._drawing.toggle()
-
-    def _picture(self, download: Download) -> tuple[str, bytes]:
-        if download.transparent:
-            self._drawing.show_now(lambda: self._window.show_surroundings(False))
-        try:
-            with self._held(download):
-                background = None if download.transparent else download.background
-                picture = take_picture(self._client, *download.size, background)
-        finally:
-            if download.transparent:
-                self._drawing.post("surroundings", lambda: self._window.show_surroundings(True))
-        return download.name("x".join(map(str, download.size)), ".png"), picture
-
-    def _figure(self, suffix: str, download: Download) -> tuple[str, bytes]:
-        from app.reports.sheet import stamped_figure  # here: matplotlib takes a second to load
-
-        try:
-            with self._held(download):
-                picture = take_picture(self._client, *FIGURE_SIZE, "white")
-        except NoPictureError:
-            if download.drive is not None:
-                raise  # the drawing in its place would show the road of a run, not of the drive
-            picture = None
-        page = stamped_figure(download.run, download.baseline, picture, download.title, suffix, download.time)
-        return download.name("figure", suffix), page
-
-    def _run(self, suffix: str, download: Download) -> tuple[str, bytes]:
-        run = download.run if download.drive is None else download.drive.past_from_start
-        return download.name("", suffix), run.to_bytes(suffix)
-
-    def _yaml(self, download: Download) -> tuple[str, bytes]:
-        return download.name("", ".yaml"), dump_config(download.run.config).encode()
-
-    def _replay(self, download: Download) -> tuple[str, bytes]:
-        from app.files.replay import replay_html
-
-        road = None if download.drive is None else download.drive.road
-        page = replay_html(
-            download.run, download.baseline, download.title, download.dark, should_stop=self._files.stopped, road=road
-        )
-        if page is None:
-            raise StoppedError("The replay was cancelled.")
-        return download.name("replay", ".html"), page.encode()
-
-    def _movie(self, download: Download) -> tuple[str, bytes]:
-        from app.files.movie import movie
-
-        first, last = float(download.run.t[0]), float(download.run.t[-1])
-        start = max(min(download.time, last - MOVIE_LENGTH), first)
-        try:
-            film, suffix = movie(self._watched(download.run, start, min(start + MOVIE_LENGTH, last)), MOVIE_RATE)
-        finally:
-            self._drawing.seek(download.time)
-            if download.playing:
-                self._drawing.toggle()
-        return download.name("", suffix), film
-
-    def _watched(self, run: Trajectory, start: float, end: float) -> Iterator[np.ndarray]:
-        """The frames of a movie, as long as the run is shown and the user wants them."""
-        frames = movie_frames(self._client, self._drawing.seek, start, end)
-        for number, frame in enumerate(frames, 1):
-            if self._files.stopped():
-                raise StoppedError("The movie was cancelled.")
-            if self._drawing.shown is not run:
-                raise StoppedError("The run changed while it was filmed. Leave it alone until the movie is done.")
-            self._tell(f"Filming… {100 * number * (1 / MOVIE_RATE) / (end - start):.0f} %")
-            yield frame
-
-    # ── In: on the thread of the job ──
+    # ── On the threads of the jobs ──
 
     def _recollect(self, visit: str) -> None:
         state, last = _state(visit), self._ask_browser()
@@ -361,6 +185,23 @@ class Transfers:
             self._say("No run", str(error))
         else:
             self._drawing.post("baseline", lambda: self._workspace.take_in(run, name.removesuffix(".npz")))
+
+    def _open(self, name: str, content: bytes) -> None:
+        try:
+            project = project_from(name, content)
+        except ConfigError as error:
+            self._refuse(name, error)
+            return
+        act = partial(self._drawing.post, "project", partial(self._workspace.open_project, project))
+        self._drawing.post("ask", lambda: self._ask_or_open(name, act))
+
+    def _ask_or_open(self, name: str, act: Callable[[], None]) -> None:
+        """On the thread that draws."""
+        lost = self._workspace.at_hand
+        if lost:
+            self._window.ask(f"Open {name[:60]}?", f"It takes the place of {lost}. Your presets stay.", "Open", act)
+        else:
+            act()
 
 
 def _state(text: str) -> State | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from time import monotonic
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import viser
@@ -18,6 +18,7 @@ from app.panels.actions import Actions
 from app.panels.address_bar import AddressBar
 from app.panels.configuration_windows import YamlWindow, show_faults
 from app.panels.controls import PRECISION
+from app.panels.export_list import ExportList
 from app.panels.files_panel import FilesPanel
 from app.panels.notifications import Notifications
 from app.panels.page_layout import PageLayout, page_layout
@@ -36,6 +37,7 @@ from app.panels.parameter_panel import ParameterPanel
 from app.panels.playback_panel import PlaybackPanel, covered
 from app.panels.plot_panel import RUNS, STUDY, PlotPanel
 from app.panels.profile_form import ProfileForm
+from app.panels.question import ask
 from app.panels.runs_panel import RunsPanel
 from app.panels.shortcuts import add_shortcuts
 from app.panels.status_line import BUSY_DELAY, drive_facts, progress_line, run_line, status_line
@@ -53,11 +55,21 @@ from app.view3d.mode_animation import PERIOD, ModeShow
 from model.config.config import Config, ConfigError
 from model.config.parameters import PARAMETER
 from model.config.validation import shorten
+from model.road.road import Road
 from model.simulation.trajectory import Trajectory, wheel_names
 
 ROAD_EVERY = 0.35  # s between two side views of the road
 FOLDERS = "View", "Export", "Import and presets"
 LAID_OUT_WITHIN = 3.0  # s in which a page tells that its panels are laid out; after that we take it that they are
+
+
+class InView(NamedTuple):
+    """What the 3-D view shows."""
+
+    run: Trajectory  # or the newest moments of a drive
+    road: Road | None  # under a drive; None: a run
+    baseline: Trajectory | None
+    beside: tuple[Beside, ...]
 
 
 class Window:
@@ -76,12 +88,14 @@ class Window:
         self._dark = False  # until the browser tells its setting
         self._run: Trajectory | None = None
         self._baseline: Trajectory | None = None
+        self._beside: tuple[Beside, ...] = ()
         self._drive: DriveState | None = None  # the newest state of the drive that is shown
         self._drawn: tuple[int, float] | None = None  # run and time that the 3-D view shows
         self._to_view: Trajectory | None = None  # a run that the 3-D view does not have yet
         self._stands_at = monotonic() + LAID_OUT_WITHIN  # when the panels of the page are laid out, s
         self._filled = False  # the page also has what is not seen at first
         self._mode: ModeShow | None = None  # shown in the place of the run
+        self._held = False  # the 3-D view shows what a picture or a film is made of
         self._ghost_hidden = False  # the baseline's vehicle is of another size
         self._run_number = 0
         self._standpoint = ""  # from which the user last chose to look
@@ -110,6 +124,7 @@ class Window:
             self._plots_panel.dock_right()
             self._playback = PlaybackPanel(gui, actions)
             self._card = WheelCard(gui, actions)
+            self.exports = ExportList(gui, actions)
             self._arrange_panels(layout)
         self.view = make_view(client, self._dark)
         self.view.on_pick(actions.pick_wheel)
@@ -159,9 +174,10 @@ class Window:
             self._run = state.past
             self._plot(time)
         self._to_view = None
-        self.view.show_live(state.recent, state.road)
-        self.view.draw(time)
-        self._drawn = (self._run_number, time)
+        if not self._held:
+            self.view.show_live(state.recent, state.road)
+            self.view.draw(time)
+            self._drawn = (self._run_number, time)
         if settled and (before is None or before.config != state.config):
             self._controls.show(state.config, touched=driven.request.touched)
         if state.ended:
@@ -181,13 +197,24 @@ class Window:
         self._baseline = baseline
         if self._run is not None:
             self._plot(self._plots.time)
-        self.view.show_ghost(baseline)
-        self._mind_the_ghost()
+        if not self._held:
+            self.view.show_ghost(baseline)
+            self._mind_the_ghost()
 
     def show_beside(self, beside: tuple[Beside, ...]) -> None:
         """Show these runs, too, from now on: their curves, and their vehicles as ghosts."""
         self._end_mode()
+        self._beside = beside
         self._plots.show_beside(beside)
+        if not self._held:
+            self._view_beside(beside)
+
+    @property
+    def beside(self) -> tuple[Beside, ...]:
+        """The runs that are shown, too."""
+        return self._beside
+
+    def _view_beside(self, beside: tuple[Beside, ...]) -> None:
         self.view.show_beside([(other.run, other.colour) for other in beside])
 
     def _mind_the_ghost(self) -> None:
@@ -199,6 +226,10 @@ class Window:
     def show_mode(self) -> None:
         """Show the chosen mode instead of the run, until the run plays on or another run comes."""
         mode, run = self._plots.spectrum.chosen, self._run
+        if self._held:
+            self._plots.spectrum.choose_run()
+            self.say("One moment", "A picture or a film is being made of the run. Show the mode when it is done.")
+            return
         if mode is None or run is None or self._drive is not None or not len(run.t):
             self._end_mode()
             return
@@ -224,6 +255,35 @@ class Window:
             self._mode, self._drawn = None, None
             self.view.show_ghost(self._baseline)
             self._plots.spectrum.choose_run()
+
+    # ── Pictures and films ──
+
+    def hold_view(self, shown: InView, time: float) -> None:
+        """Have the 3-D view show this, at a time, s, until `release_view`, whatever the page shows meanwhile."""
+        self._leave_mode()
+        self._held = True
+        if shown.road is None:
+            self.view.show(shown.run)
+        else:
+            self.view.show_live(shown.run, shown.road)
+        self.view.show_ghost(shown.baseline)
+        if shown.beside != self._beside:
+            self._view_beside(shown.beside)
+        self.view.draw(time)
+
+    def film(self, time: float) -> None:
+        """Show another time, s, of what is held."""
+        self.view.draw(time)
+
+    def release_view(self) -> None:
+        """Let the 3-D view show what the page shows."""
+        self._held, self._drawn = False, None
+        self.view.show_ghost(self._baseline)
+        self._view_beside(self._beside)
+        if self._drive is not None:
+            self.view.show_live(self._drive.recent, self._drive.road)
+        else:
+            self._to_view = self._run
 
     def redraw_spectrum(self) -> None:
         self._plots.redraw_spectrum()
@@ -271,6 +331,8 @@ class Window:
             return
         if not self._filled:
             self._fill()
+        if self._held:
+            return
         if self._to_view is not None:
             self.view.show(self._to_view)
             self._to_view = None
@@ -423,6 +485,8 @@ class Window:
         self._show_wheel()
 
     def _show_wheel(self) -> None:
+        if self._held:
+            return
         wheel = self._card.wheel
         state = self.view.wheel_state(wheel) if wheel is not None else None
         if wheel is not None and state is not None and self._run is not None:
@@ -469,6 +533,10 @@ class Window:
         """Show all that is wrong with a configuration from outside; text: its own, which the user may mend."""
         show_faults(self._client.gui, title, faults, self._actions, text)
 
+    def ask(self, title: str, words: str, yes: str, act: Callable[[], None]) -> None:
+        """Have the user say yes or no; act: called on the event loop at a yes."""
+        ask(self._client.gui, title, words, yes, act, self._actions)
+
     def ask_about_profile(self, question: ProfileQuestion) -> None:
         """Ask how the file of a profile is to be read."""
         ProfileForm(self._client.gui, question, self._actions)
@@ -503,10 +571,6 @@ class Window:
         """Whether the 3-D view shows a run by now."""
         return self._drawn is not None
 
-    def show_progress(self, doing: str) -> None:
-        """Say what is being made for a download; empty: nothing."""
-        self._notifications.progress(doing)
-
     def _arrange(self, layout: PageLayout) -> None:
         with self._client.atomic():
             self._arrange_panels(layout)
@@ -523,6 +587,7 @@ class Window:
     def _float(self, layout: PageLayout) -> None:
         self._playback.place(layout)
         self._card.place(layout)
+        self.exports.place(layout)
 
     def _plot(self, time: float) -> None:
         assert self._run is not None

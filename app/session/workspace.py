@@ -12,9 +12,11 @@ from typing import Any
 from app.format.link import Link
 from app.plots.curves import Beside
 from app.runs.history import REST, RUN_COLOURS, Changes, Kept, Runs, run_name
+from app.runs.project import Project
 from app.runs.request import Finished, Request, first_request, same
 from app.runs.runner import Runner
 from app.runs.storage import PRESETS, State, state_text
+from app.runs.study_choice import StudyChoice
 from app.session.window import Window
 from model.config.config import Config, ConfigError
 from model.simulation.trajectory import Trajectory
@@ -375,6 +377,42 @@ class Workspace:
     def _request(self, request: Request) -> None:
         """Request this; the controls follow, since the user has touched none."""
         self._runner.change(lambda latest: Request(request.base, request.changes))
+
+    # ── Projects ──
+
+    def project(self, study: StudyChoice) -> Project:
+        """All that is at hand; the run that is shown is kept for it."""
+        if self._good is not None and len(self._good.trajectory.t):
+            self._keep(self._good)
+        runs = tuple(self._runs)
+        ticked = tuple(place for place, kept in enumerate(runs) if kept.number in self._ticked)
+        own = tuple(self._presets[name] for name in self._own)
+        return Project(self._changes.present, own, runs, ticked, self._baseline, study)
+
+    @property
+    def at_hand(self) -> str:
+        """What would be lost if a project were opened, in words; empty: nothing that the user has taken care of."""
+        runs = sum(kept is not self._kept or kept.named for kept in self._runs)
+        lost = [f"{runs} kept run{'s' if runs > 1 else ''}"] if runs else []
+        return " and ".join([*lost, *(["the baseline"] if self._baseline is not None else [])])
+
+    def open_project(self, project: Project) -> None:
+        """Let it take the place of runs, baseline, choices and parameters; its presets come to those that there are."""
+        for kept in tuple(self._runs):
+            self._runs.delete(kept.number)
+        self._kept, self._rested = None, True  # what is shown now is not kept again
+        for preset in project.presets:
+            if preset not in self._presets.values():
+                self._offer(preset)
+        self._offer(self._runner.latest.base)
+        taken = [self._runs.take_back(kept).number for kept in project.runs]
+        self._ticked = [taken[place] for place in project.ticked]
+        self._show_beside()
+        baseline = project.baseline
+        self._set_baseline(None if baseline is None else self._runs.find(baseline.config) or baseline)
+        self._window.study.choose(project.study)
+        self._request(project.shown)
+        self._window.say("Project opened", "Undo leads back to the parameters that were shown before.")
 
     # ── From one visit to the next ──
 

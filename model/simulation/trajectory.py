@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 FASTEST = 100.0  # m/s: no run comes further in its time; a file's numbers may be anything
 LONGEST_TEXT = 300  # characters of a file's status and advice
 
+Columns = dict[str, np.ndarray]  # heading with its unit in brackets -> (N,)
+
 
 @dataclass(frozen=True)
 class RunStatistics:
@@ -168,24 +170,40 @@ class Trajectory(Motion):
         np.savez_compressed(file, **entries, **asdict(self.statistics))
 
     def _write_csv(self, file: IO[bytes]) -> None:
-        names = wheel_names(self.system)
-        columns = {
-            "t [s]": self.t,
-            "hull x [m]": self.q[:, 0, 0],
-            "hull y [m]": self.q[:, 0, 1],
-            "hull pitch [rad]": self.q[:, 0, 2],
-            "hull speed [m/s]": self.v[:, 0, 0],
-            "hull vertical acceleration [m/s2]": self.a[:, 0, 1],
-            "drive force [N]": self.drive_force,
-        }
-        columns |= {f"normal load {name} [N]": self.normal_load[:, w] for w, name in enumerate(names)}
-        columns |= {f"traction {name} [N]": self.traction[:, w] for w, name in enumerate(names)}
-        text = StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(columns)
-        table = np.column_stack(list(columns.values())) + 0.0  # no minus before zero
-        writer.writerows([f"{value:.9g}" for value in row] for row in table)
-        file.write(text.getvalue().encode())
+        columns = {"t [s]": self.t} | motion_columns(self) | load_columns(self) | traction_columns(self)
+        file.write(csv_bytes(columns))
+
+
+def motion_columns(run: Trajectory) -> Columns:
+    """How the hull moves, and what drives it."""
+    return {
+        "hull x [m]": run.q[:, 0, 0],
+        "hull y [m]": run.q[:, 0, 1],
+        "hull pitch [rad]": run.q[:, 0, 2],
+        "hull speed [m/s]": run.v[:, 0, 0],
+        "hull vertical acceleration [m/s2]": run.a[:, 0, 1],
+        "drive force [N]": run.drive_force,
+    }
+
+
+def load_columns(run: Trajectory) -> Columns:
+    """Of each wheel."""
+    return {f"normal load {name} [N]": run.normal_load[:, w] for w, name in enumerate(wheel_names(run.system))}
+
+
+def traction_columns(run: Trajectory) -> Columns:
+    """Of each wheel."""
+    return {f"traction {name} [N]": run.traction[:, w] for w, name in enumerate(wheel_names(run.system))}
+
+
+def csv_bytes(columns: Columns) -> bytes:
+    """The content of a CSV file: a row of headings, then a row a sample, nine digits each."""
+    text = StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    table = np.column_stack(list(columns.values())) + 0.0  # no minus before zero
+    writer.writerows([f"{value:.9g}" for value in row] for row in table)
+    return text.getvalue().encode()
 
 
 def sample_count(duration: float, rate: float) -> int:

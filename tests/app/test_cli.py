@@ -98,6 +98,25 @@ def test_run_writes_what_it_shows(tmp_path):
         assert words in " ".join(" ".join(row) for row in rows)
 
 
+def test_run_writes_the_columns_that_are_asked_for(tmp_path):
+    out = tmp_path / "run.csv"
+    assert trackride("run", *SHORT, "--out", out, "--channels", "seat,travel").exit_code == 0
+    heads = out.read_text().splitlines()[0].split(",")
+    assert heads[:2] == ["t [s]", "travel R1 [m]"]
+    assert heads[-1] == "seat vertical acceleration [m/s2]"
+
+
+@pytest.mark.parametrize(
+    ("out", "channels", "said"),
+    [("run.csv", "seat,heat", "'heat' is none; give some of motion,loads"), ("run.npz", "seat", "ends in .csv")],
+)
+def test_columns_that_cannot_be_are_said_before_computing(tmp_path, monkeypatch, out, channels, said):
+    monkeypatch.setattr(model, "simulate", lambda *_: pytest.fail("it was computed"))
+    result = trackride("run", "--out", tmp_path / out, "--channels", channels)
+    assert result.exit_code == 2
+    assert said in result.stderr
+
+
 def test_run_writes_csv_and_needs_no_file(tmp_path):
     out = tmp_path / "run.csv"
     assert trackride("run", *SHORT, "--out", out).exit_code == 0

@@ -217,3 +217,55 @@ def test_tabs_go_on_where_each_was_and_a_new_one_where_the_browser_was_last(open
     three.wait_for_value("Speed", "now === value", 2)
     one.page.reload()
     one.wait_for_value("Speed", "now === value", 70)
+
+
+def test_exports_wait_for_their_turn_and_one_is_cancelled_without_the_others(at_rest: Explorer) -> None:
+    """A movie holds up no table; the screenshot behind it comes when it is cancelled."""
+    page = at_rest.page
+    at_rest.fold("Export")
+    with page.expect_download(timeout=DOWNLOAD) as table:
+        at_rest.button("Movie").click()
+        expect(page.get_by_text(re.compile(r"^Movie: (under way|\d+ %)"))).to_be_visible()
+        at_rest.button("Screenshot").click()
+        expect(page.get_by_text("Screenshot: waits for its turn")).to_be_visible()
+        at_rest.button("CSV").click()
+    assert table.value.suggested_filename.endswith(".csv")
+    with page.expect_download(timeout=DOWNLOAD) as picture:
+        page.get_by_role("group", name=re.compile("^Movie:")).get_by_role("button", name="Cancel").click()
+    assert picture.value.suggested_filename.endswith("1280x720.png")
+    expect(page.get_by_text("Movie was cancelled")).to_be_visible()
+    expect(page.get_by_text(re.compile("^Movie:|^Screenshot:"))).to_have_count(0)
+    at_rest.fold("Export")
+
+
+def test_a_project_brings_runs_names_and_baseline_to_another_browser(open_tab: OpenTab, tmp_path: Path) -> None:
+    one = open_tab()
+    page = one.page
+    page.get_by_role("tab", name="Runs").click()
+    before = one.run_number()
+    one.press("Speed", "End")
+    one.wait_for_run(after=before)
+    one.control("Name").fill("Fast one")
+    page.keyboard.press("Enter")
+    page.get_by_role("button", name="Pin", exact=True).click()
+    before = one.run_number()
+    one.press("Amplitude", "End")
+    one.wait_for_run(after=before)
+    one.fold("Export")
+    with page.expect_download(timeout=DOWNLOAD) as download:
+        one.button("Save project").click()
+    file = tmp_path / download.value.suggested_filename
+    download.value.save_as(file)
+    assert file.suffix == ".trackride"
+
+    two = open_tab()
+    two.page.get_by_role("tab", name="Runs").click()
+    two.fold("Import and presets")
+    with two.page.expect_file_chooser() as chooser:
+        two.button("Open a project").click()
+    chooser.value.set_files(file)
+    two.wait_for_value("Speed", "now === value", 70)
+    two.wait_for_value("Amplitude", "now === value", 300)
+    expect(two.page.locator(".trackride-compared")).to_contain_text("Baseline ● Fast one")
+    expect(two.page.get_by_text("Fast one", exact=True).first).to_be_visible()
+    expect(two.page.locator(".trackride-figures:visible").first).to_contain_text(re.compile(r"rms, m/s².*%"))

@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 import app.files.pictures
-from app.files.pictures import NoPictureError, framed, movie_frames, take_picture
+from app.files.pictures import NoPictureError, framed, take_picture
 from model.config.config_files import load_config
 from tests.app.conftest import Tab, trackride_threads, wait_for
 
@@ -56,15 +56,6 @@ def test_a_picture_is_filled_from_left_to_right_by_what_the_page_shows(page: flo
     browser.camera.aspect = page
     take_picture(browser, 160, 90, "white")
     assert browser.asked["fov"] == pytest.approx(framed(0.4, page, 16 / 9))
-
-
-def test_a_movie_shows_each_time_before_it_is_filmed() -> None:
-    browser = FakeBrowser(np.zeros((720, 1280, 3), dtype=np.uint8))
-    seen: list[float] = []
-    frames = list(movie_frames(browser, seen.append, 1.0, 2.0))
-    assert len(frames) == len(seen) == 20
-    assert seen == pytest.approx(np.arange(1, 2, 0.05))
-    assert browser.asked["transport_format"] == "jpeg"
 
 
 @pytest.mark.parametrize("error", [TimeoutError("late"), RuntimeError("gone")])
@@ -118,7 +109,7 @@ def test_a_tab_that_closes_during_a_picture_leaves_nothing_behind(explore: Any, 
     wait_for(lambda: [m for m in tuple(tab.messages) if m["type"] == "GetRenderRequestMessage"], "the request")
     assert "trackride-job" in trackride_threads()
     tab.press("Screenshot")
-    wait_for(lambda: [n for n in tab.notifications if n["title"] == "One at a time"])
+    wait_for(lambda: tab.find("Screenshot: waits for its turn"))
     began = time.monotonic()
     tab.close()
     wait_for(lambda: not trackride_threads(), "the threads to end")

@@ -13,12 +13,13 @@ from typer.testing import CliRunner, Result
 
 import model
 from app import cli
-from app.format.differences import figure_text
+from app.format.differences import change_text, figure_text
 from app.format.markup import Html
 from app.reports import run_report as report
 from app.reports.drawings import LIGHT_LOOK, Drawing
 from app.reports.run_report import report_page, ride_rows
 from model import load_config, simulate
+from model.analysis.figures import comparison
 from model.analysis.ride import Summary
 from model.config.config_files import parse_config
 from model.simulation.trajectory import Trajectory
@@ -83,7 +84,7 @@ def test_all_texts_are_escaped(page):
 
 def test_figures_and_checks(page, fast):
     of = Summary(fast)
-    assert ("Vertical acceleration, rms", figure_text(of.acceleration_rms), "m/s²") in ride_rows(fast)
+    assert ("Vertical acceleration, rms", figure_text(of.acceleration_rms), "m/s²", "") in ride_rows(fast)
     for row in ride_rows(fast):
         assert f"<dt>{row.label}</dt><dd>{row.value}" in page
     assert figure_text(of.load_max[0] / 1e3) in page
@@ -134,6 +135,29 @@ def test_every_kind_of_run_has_a_report(case):
     text = words(report_page(run_of(**CASES[case]), case))
     assert "None" not in text
     assert "nan" not in text
+
+
+@pytest.mark.usefixtures("unpainted")
+def test_a_baseline_stands_beside_every_figure(fast):
+    baseline = run_of()
+    parts: list[float] = []
+    page = words(report_page(fast, "mine", baseline, parts.append))
+    assert "Beside the baseline, Paper vehicle" in page
+    assert "<td>30 km/h</td><td>15 km/h</td>" in page.partition("<dl>")[0]
+    for row in ride_rows(fast, baseline):
+        assert f'class="beside">{row.beside}' in page
+    rms = next(row for row in comparison(fast, baseline) if row.figure == "Vertical acceleration, rms")
+    assert f"<td>{change_text(rms.change)}</td>" in page.partition("<h2>Beside the baseline")[2]
+    assert parts == sorted(parts)
+    assert parts[0] == 0.0
+    assert 0.8 < parts[-1] < 1.0
+    texts = re.findall(r"<details>.*?<pre>(.*?)</pre>", page, flags=re.S)
+    assert [parse_config(html.unescape(text)) for text in texts] == [fast.config, baseline.config]
+
+
+@pytest.mark.usefixtures("unpainted")
+def test_an_equal_baseline_says_so(fast):
+    assert "Both have the same parameters" in words(report_page(fast, "mine", fast))
 
 
 @pytest.mark.usefixtures("unpainted")

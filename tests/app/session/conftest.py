@@ -6,12 +6,17 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+import pytest
+
 from app.files.uploads import ProfileQuestion
+from app.panels.export_list import ExportLine
 from app.plots.curves import Beside
 from app.runs.history import Kept, Runs
 from app.runs.request import Request
+from app.session.window import InView
 from model.config.config import Config, ConfigError
 from model.simulation.trajectory import Trajectory
+from tests.app.conftest import Tab, wait_for
 
 
 class FakeRunsPanel:
@@ -52,6 +57,15 @@ class FakeRunsPanel:
         self.compared.append((now, baseline))
 
 
+class FakeExportList:
+    """The list of exports, as it was left."""
+
+    lines: Sequence[ExportLine] = ()
+
+    def show(self, lines: Sequence[ExportLine]) -> None:
+        self.lines = lines
+
+
 class FakeWindow:
     """A window that remembers what it was told."""
 
@@ -61,11 +75,16 @@ class FakeWindow:
         self.dark = False
         self.said: list[tuple[str, str]] = []  # title and body
         self.faults: list[tuple[str, ConfigError]] = []
-        self.asked: list[ProfileQuestion] = []  # how a profile is to be read
+        self.profiles: list[ProfileQuestion] = []  # how a profile is to be read
         self.presets: dict[str, Config] = {}
         self.chosen = ""
         self.ghosts: list[Trajectory | None] = []
-        self.progress: list[str] = []
+        self.exports = FakeExportList()
+        self.study = Called()
+        self.asked: list[tuple[str, str, str, Callable[[], None]]] = []
+        self.held: InView | None = None  # what the 3-D view shows for a picture
+        self.times: list[float] = []  # that it showed for pictures
+        self.shows_mode = False
         self.surroundings: list[bool] = []
         self.stored: list[str] = []  # by the tab
 
@@ -77,12 +96,15 @@ class FakeWindow:
     def say(self, title: str, body: str) -> None:
         self.said.append((title, body))
 
+    def ask(self, title: str, words: str, yes: str, act: Callable[[], None]) -> None:
+        self.asked.append((title, words, yes, act))
+
     def show_faults(self, title: str, faults: ConfigError, text: str | None = None) -> None:
         self.faults.append((title, faults))
         self.to_mend = text
 
     def ask_about_profile(self, question: ProfileQuestion) -> None:
-        self.asked.append(question)
+        self.profiles.append(question)
 
     def show_presets(self, presets: Mapping[str, Config], chosen: str) -> None:
         self.presets, self.chosen = dict(presets), chosen
@@ -96,8 +118,16 @@ class FakeWindow:
     def set_dark(self, dark: bool) -> None:
         self.dark = dark
 
-    def show_progress(self, doing: str) -> None:
-        self.progress.append(doing)
+    def hold_view(self, shown: InView, time: float) -> None:
+        self.held = shown
+        self.times.append(time)
+
+    def film(self, time: float) -> None:
+        assert self.held is not None
+        self.times.append(time)
+
+    def release_view(self) -> None:
+        self.held = None
 
     def store(self, state: str) -> None:
         self.stored.append(state)
@@ -124,3 +154,12 @@ class Called:
 
     def __getattr__(self, name: str) -> Callable[..., None]:
         return lambda *arguments: self.calls.append((name, *arguments))
+
+
+@pytest.fixture
+def tab(explore: Any, open_tab: Any) -> Tab:
+    opened: Tab = open_tab(explore())
+    wait_for(lambda: opened.shows_run(1), "run 1")
+    opened.use("Speed, km/h", 22)
+    wait_for(lambda: opened.shows_run(2), "run 2")
+    return opened

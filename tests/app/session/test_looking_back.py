@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.files.movie_frames import LENGTHS
 from app.runs.drive import Driver
 from app.tabs.trust import trust_html
 from model.analysis.ride import suspension_travel
@@ -15,7 +16,7 @@ from model.config.config_files import load_config
 from model.simulation.simulate import simulate
 from tests.app.conftest import FakeView, Tab, wait_for
 from tests.app.runs.test_drive import Clock
-from tests.app.session.test_transfers import answer_renders, download, renders
+from tests.app.session.test_downloads import answer_renders, download, renders
 
 PAPER = load_config("paper")
 
@@ -98,8 +99,7 @@ def test_what_a_drive_gives_to_take_home(explore: Any, open_tab: Any) -> None:
 def test_a_movie_of_a_pause_films_the_past_and_leaves_the_drive_alone(
     explore: Any, open_tab: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.session.transfers.MOVIE_LENGTH", 0.15)
-    monkeypatch.setattr("app.files.pictures.MOVIE_SIZE", (64, 36))
+    monkeypatch.setitem(LENGTHS, "4 s", 0.15)
     explorer = explore()
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))

@@ -6,6 +6,7 @@ The last tests go through a tab, over viser's own protocol.
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,8 +14,10 @@ import pytest
 
 import app.session.workspace
 from app.runs.history import REST, Runs
+from app.runs.project import project_from, project_text
 from app.runs.request import Finished, Request, first_request
 from app.runs.storage import State, state_from, state_text
+from app.runs.study_choice import StudyChoice
 from app.session.workspace import BESIDE, CALM, COMPARE_EVERY, Workspace
 from model.config.config import Config
 from model.config.config_files import load_config
@@ -85,6 +88,48 @@ class Visit:
 @pytest.fixture
 def visit() -> Visit:
     return Visit()
+
+
+# ── Projects ──
+
+
+def test_a_project_takes_the_place_of_what_was_at_hand(visit: Visit) -> None:
+    visit.change(SPEED_KEY, 20)
+    visit.workspace.rename("Mine")
+    visit.workspace.pin()
+    visit.workspace.tick_run(visit.window.runs.numbered("Paper vehicle"))
+    visit.workspace.save_preset("My tank")
+    visit.run()
+    visit.change(AMPLITUDE_KEY, 0.02)
+    study = StudyChoice(view="map", fit=3)
+    saved = project_from("p.trackride", project_text(visit.workspace.project(study)).encode())
+
+    other = Visit()
+    assert other.workspace.at_hand == ""
+    other.change(SPEED_KEY, 33)
+    other.workspace.save_preset("Its own")
+    other.run()
+    assert other.workspace.at_hand == "2 kept runs"
+    other.workspace.pin()
+    assert other.workspace.at_hand.endswith(" and the baseline")
+    other.workspace.open_project(saved)
+    other.run()
+    assert other.config == visit.config
+    assert other.window.runs.rows == visit.window.runs.rows
+    assert other.window.runs.baseline is not None
+    assert other.window.runs.baseline.name == "Mine"
+    assert {"My tank", "Its own"} <= {config.name for config in other.window.presets.values()}
+    assert other.window.runs.ticked == [other.window.runs.numbered("Paper vehicle")]
+    assert other.window.study.calls == [("choose", replace(study, fit=0))]
+    other.workspace.go(-1)
+    assert other.config.name == "Its own"
+
+
+def test_the_run_that_is_shown_is_part_of_a_project_though_the_user_has_not_rested(visit: Visit) -> None:
+    visit.runner.change(lambda request: request.changed(SPEED_KEY, 44))
+    visit.come()
+    runs = visit.workspace.project(StudyChoice()).runs
+    assert [kept.config.drive.speed_kmh for kept in runs] == [15, 44]
 
 
 # ── Runs beside ──
