@@ -21,6 +21,7 @@ from model.config.profile_points import points
 from model.config.validation import Fault
 
 NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.ASCII | re.IGNORECASE)  # float() also takes 1_0
+LARGE = 1e6  # from there on a number's text has six digits (number_text)
 TYPED, COUNTED = 6, 4  # digits in a unit of choice: of a number that people type, and of one that comes of another unit
 
 
@@ -62,12 +63,12 @@ def allowed(parameter: Parameter) -> str:
 
 
 def shown_number(parameter: Parameter, value: float) -> float:
-    """A file's value in the shown unit, free of rounding noise; in a unit of choice also of digits that nobody reads."""
+    """A file's value in the shown unit, free of rounding noise; in a unit of choice with few digits."""
     exact = float(f"{value * parameter.shown_factor:.10g}")
     if parameter.shown_unit not in BY_CHOICE or exact == 0 or not math.isfinite(exact):
         return exact
     short = float(f"{exact:.{TYPED}g}")
-    if float(f"{short / parameter.shown_factor:.10g}") == value:
+    if float(f"{short / parameter.shown_factor:.10g}") == value or abs(exact) >= LARGE:
         return short
     return round(exact, max(COUNTED - 1 - math.floor(math.log10(abs(exact))), 0))
 
@@ -84,7 +85,7 @@ def file_number(parameter: Parameter, shown: float, present: Sequence[float] = (
 
 
 def slider_numbers(parameter: Parameter, value: float) -> tuple[float, float, float]:
-    """Ends and step, as shown, of a slider for vehicles like the one with this value: round ones in a unit of choice."""
+    """Ends and step, as shown, of a slider for vehicles like the one with this value; round ones in all units."""
     low, high, step = (float(shown_number(parameter, number)) for number in parameter.slider(value))
     if parameter.shown_unit not in BY_CHOICE:
         return low, high, step
@@ -169,7 +170,7 @@ def refusal(fault: Fault, given: Any, config: Config, units: Units = METRIC) -> 
         return f"{parameter.label}: a value is needed. Give {allowed(parameter)}."
     if isinstance(given, tuple) and not parameter.per_wheel and parameter.kind != "list":
         return f"{parameter.label}: one number is needed, with a point: 1.5, not 1,5. Give {allowed(parameter)}."
-    if isinstance(given, tuple) and all(isinstance(number, int | float) for number in given):
+    if isinstance(given, tuple) and all(isinstance(one, int | float) and math.isfinite(one) for one in given):
         what = f"{shown_text(parameter, given)} {parameter.shown_unit}".strip()
         return f"{parameter.label}: {what} is not allowed. Give {allowed(parameter)}, for each road wheel."
     if not isinstance(given, int | float) or not math.isfinite(given):

@@ -108,7 +108,7 @@ class Units:
 
     def changed(self, chosen: Mapping[str, Any]) -> Units:
         """With other choices, as far as there are such: anybody may have told them."""
-        return replace(self, **{name: chosen[name] for name in CHOICES.keys() & chosen if chosen[name] in CHOICES[name]})
+        return replace(self, **{name: chosen[name] for name in CHOICES if chosen.get(name) in CHOICES[name]})
 
     @property
     def chosen(self) -> dict[str, str]:
@@ -152,5 +152,5 @@ def _names(units: Units) -> set[str]:
 
 # Names of all units that are there by choice only
 BY_CHOICE = frozenset().union(*(_names(Units(*chosen)) for chosen in product(*CHOICES.values()))) - TABLE.keys()
-# Decimals that plots in such a unit need more than others
-FINER = {name: min(told.finer for told in map(US.of, TABLE) if told.name == name) for name in _names(US) & BY_CHOICE}
+# Decimals that plots in such a unit have more than others
+FINER = {name: min(told.finer for told in map(US.of, TABLE) if told.name == name) for name in ("in", "g", "g²/Hz")}

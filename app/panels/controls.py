@@ -153,7 +153,7 @@ class Control:
             self._one.min, self._one.max = min(self._one.min, shown), max(self._one.max, shown)
 
     def describe(self, parameter: Parameter, units: Units) -> None:
-        """Show the same parameter, as it is now (at the wheel, or of the torsion spring), and its value in these units."""
+        """Show the same parameter, which may be a rate at the wheel or of the spring itself, in these units."""
         parameter = units.told(parameter)
         if parameter == self.parameter:
             return

@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from app.format.units import METRIC, Units
 from app.plots.curves import Beside
 from app.runs.history import Kept, Runs
 from app.runs.request import Request
@@ -46,7 +47,10 @@ class FakeRunsPanel:
     def show_name(self, name: str) -> None:
         self.name = name
 
-    def compare(self, now: Trajectory, baseline: Trajectory | None, beside: Sequence[Beside] = ()) -> None:
+    def compare(
+        self, now: Trajectory, baseline: Trajectory | None, beside: Sequence[Beside] = (), units: Units = METRIC
+    ) -> None:
+        self.units = units
         self.compared_beside = [other.name for other in beside]
         self.compared.append((now, baseline))
 
@@ -58,6 +62,7 @@ class FakeWindow:
         self.runs = FakeRunsPanel()
         self.runs_in_front = False
         self.dark = False
+        self.units = METRIC
         self.said: list[tuple[str, str]] = []  # title and body
         self.faults: list[tuple[str, ConfigError]] = []
         self.presets: dict[str, Config] = {}
@@ -89,6 +94,9 @@ class FakeWindow:
 
     def set_dark(self, dark: bool) -> None:
         self.dark = dark
+
+    def set_units(self, units: Units) -> None:
+        self.units = units
 
     def show_progress(self, doing: str) -> None:
         self.progress.append(doing)
