@@ -13,6 +13,7 @@ from app.panels.callbacks import by_user
 from app.panels.files_panel import DATA_BUTTONS, FIGURE_BUTTONS, MOTION_BUTTONS
 from app.panels.parameter_panel import BOXED
 from app.panels.plot_panel import TABS
+from app.panels.units_panel import SYSTEMS
 from model.config.config import Config
 from model.config.parameters import PARAMETERS
 
@@ -33,6 +34,8 @@ def add_palette(gui: viser.GuiApi, presets: Mapping[str, Config], actions: Actio
     for group, buttons in EXPORTS.items():
         for name, what in buttons.items():
             add(f"{group}: {name}", "Export", partial(actions.export, what))
+    for name, units in SYSTEMS.items():
+        add(f"{name} units", "Units", partial(actions.choose_units, units.chosen))
     for name, preset in presets.items():
         add(preset.name, "Preset", partial(actions.load, name))
 
