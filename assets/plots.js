@@ -6,6 +6,8 @@
 // given the zoom here, and so are the load maps.
 if (!window.trackridePlots) {
   const TIME = 'trackride-time';
+  const finer = JSON.parse(this.dataset.finer);  // decimals that values in a unit have more than in others, by the unit
+  const more = (chart) => finer[chart.axes[1].label] ?? 0;
   const met = new WeakSet(), inView = new WeakSet();  // charts
   const groups = {};  // of charts, by their sync key: marks [[x, name], …], zoom [from, to] as parts of the data's range,
                       // and window [from, to] of x, or null
@@ -55,7 +57,7 @@ if (!window.trackridePlots) {
       if (part > 0 && Number.isFinite(other)) value += part * (other - value);
     }
     const {min, max} = chart.scales.y;
-    const most = name === '' ? 2 : 4;  // decimals that the values have
+    const most = (name === '' ? 2 : 4) + more(chart);  // decimals that the values have
     const digits = Math.min(Math.max(Math.ceil(3 - Math.log10(max - min)), 0), most);  // to a thousandth of the axis
     return (Number(value.toFixed(digits)) + 0).toFixed(digits);  // no minus before zero
   };
@@ -302,7 +304,7 @@ if (!window.trackridePlots) {
     if (clear.length) {
       const most = clear.reduce((a, b) => Math.abs(b.value) > Math.abs(a.value) ? b : a), [x, y] = place(most);
       const {left, top, width, height} = chart.bbox, beyond = y + (most.value < 0 ? 10 : -10) * px;
-      const text = `${most.value.toFixed(1)} ${chart.axes[1].label}`.replace('-', '−');
+      const text = `${most.value.toFixed(most.value < 1000 ? 1 + more(chart) : 0)} ${chart.axes[1].label}`.replace('-', '−');
       ctx.font = `${letters(chart)}px system-ui, sans-serif`;
       [ctx.textAlign, ctx.textBaseline, ctx.lineJoin] = ['left', 'middle', 'round'];
       const at = [

@@ -55,8 +55,10 @@ if (!window.trackrideStudy) {
     const first = Math.ceil(low / step - 1e-9), last = Math.floor(high / step + 1e-9);
     return Array.from({length: Math.max(last - first + 1, 0)}, (_, k) => Number(((first + k) * step).toPrecision(12)));
   };
+  const inMetric = (value, {metric: [, factor]}) => Number.isFinite(value) ? Number((value / factor).toPrecision(6)) : value;
+  const heading = ({label, metric: [unit]}) => `${label} [${unit}]`;  // of a column in a file
   const snap = (column, value) => {  // to what the slider takes
-    const whole = column.low + Math.round((value - column.low) / column.step) * column.step;
+    const whole = column.first + Math.round((value - column.first) / column.step) * column.step;
     return Number(Math.min(Math.max(whole, column.low), column.high).toPrecision(10));
   };
 
@@ -252,7 +254,7 @@ if (!window.trackrideStudy) {
       const drawn = profiler(data, width, height, look());
       const {svg, panels} = drawn;
       const {columns, rows} = study.choice, {figures, keys} = study.offer;
-      const figureList = figures.map(({name, label, unit}) => [name, unit ? `${label}, ${unit}` : label]);
+      const figureList = figures.map(({name, label}) => [name, label]);
       const keyList = keys.map(([key, label, group]) => [key, `${group}: ${label}`]);
       const swap = (list, old, other) => list.includes(other) ? list : list.map((one) => one === old ? other : one);
       const lists = [
@@ -326,9 +328,9 @@ if (!window.trackrideStudy) {
     },
     table: (data) => {
       const rows = data.figures.map((figure, k) => ({...figure, k})).filter(({shown}) => shown);
-      const head = ['parameter', 'unit', 'value', ...rows.map(({label, unit}) => `${label} [${unit}]`)];
-      return [head, ...data.columns.filter(({shown}) => shown).flatMap((column) =>
-        column.x.map((value, k) => [column.label, column.unit, value, ...rows.map((row) => column.y[row.k][k])]))];
+      return [['parameter', 'unit', 'value', ...rows.map(heading)], ...data.columns.filter(({shown}) => shown).flatMap((column) =>
+        column.x.map((value, k) => [column.label, column.metric[0], inMetric(value, column),
+          ...rows.map((row) => inMetric(column.y[row.k][k], row))]))];
     },
   };
 
@@ -483,8 +485,8 @@ if (!window.trackrideStudy) {
     },
     picture: (data) => figureMap(data, 760, 600, LIGHT, RAMP.light).svg,
     table: ({x, y, values, figure}) => [
-      [`${x.label} [${x.unit}]`, `${y.label} [${y.unit}]`, `${figure.label} [${figure.unit}]`],
-      ...values.flatMap((row, j) => row.map((value, i) => [x.at[i], y.at[j], value])),
+      [x, y, figure].map(heading),
+      ...values.flatMap((row, j) => row.map((value, i) => [inMetric(x.at[i], x), inMetric(y.at[j], y), inMetric(value, figure)])),
     ],
   };
 
@@ -499,20 +501,21 @@ if (!window.trackrideStudy) {
       'aria-label': 'Ride-limited and shock-limited speeds',
     });
     const spots = [];
-    [['ride', 'Absorbed power reaches 6 W, km/h', 'rms of the heights, mm, with the classes of ISO 8608', true],
-      ['shock', 'Shock reaches 2.5 g, km/h', 'height of the half-round, mm', false]].forEach(([name, title, axis, powers], k) => {
+    const {speed: {unit: inSpeed}, size: {unit: inSize, metric: [, perMm]}} = data;
+    [['ride', `Absorbed power reaches 6 W, ${inSpeed}`, `rms of the heights, ${inSize}, with the classes of ISO 8608`, true],
+      ['shock', `Shock reaches 2.5 g, ${inSpeed}`, `height of the half-round, ${inSize}`, false]].forEach(([name, title, axis, powers], k) => {
       const start = left + (beside ? k * (wide + gap) : 0), end = start + wide;
       const top = head + (beside ? 0 : k * (head + high + foot)), bottom = top + high;
       const sizes = [...data.own[name], ...data.baseline[name]].map(({size}) => size);
       const turn = powers ? Math.log10 : (value) => value;
-      const low = powers ? Math.min(2, ...sizes) * 0.85 : 0, far = Math.max(powers ? 100 : 400, ...sizes) * 1.06;
+      const low = powers ? Math.min(2 * perMm, ...sizes) * 0.85 : 0, far = Math.max((powers ? 100 : 400) * perMm, ...sizes) * 1.06;
       const place = scale(start, end, turn(low), turn(far)), x = (size) => place(turn(size)), y = scale(bottom, top, 0, data.fastest * 1.06);
       svg.append(text(start, top - 8, title, {fill: colours.ink, weight: 600, size: 11.5}),
         make('rect', {x: start, y: top, width: wide, height: high, fill: 'none', stroke: colours.frame}));
       ticks(0, data.fastest, high / 36).forEach((tick) => svg.append(
         make('path', {d: `M${start} ${y(tick).toFixed(1)}H${end}`, stroke: colours.grid}),
         text(start - 6, y(tick) + 3.5, words(tick), {fill: colours.dim, anchor: 'end', size: 10})));
-      (powers ? [2, 5, 10, 20, 50, 100, 200].filter((tick) => tick > low && tick < far) : ticks(0, far, wide / 60)).forEach((tick) => svg.append(
+      (powers ? [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200].filter((tick) => tick > low && tick < far) : ticks(0, far, wide / 60)).forEach((tick) => svg.append(
         make('path', {d: `M${x(tick).toFixed(1)} ${top}V${bottom}`, stroke: colours.grid}),
         text(x(tick), bottom + 14, words(tick), {fill: colours.dim, anchor: 'middle', size: 10})));
       svg.append(text((start + end) / 2, bottom + 31, axis, {fill: colours.ink, anchor: 'middle', weight: 500}));
@@ -548,7 +551,7 @@ if (!window.trackrideStudy) {
         const near = spots.reduce((best, one) => Math.hypot(one.x - px, one.y - py) < Math.hypot(best.x - px, best.y - py) ? one : best, {x: -99, y: -99});
         readout.hidden = Math.hypot(near.x - px, near.y - py) > 16;
         if (readout.hidden) return;
-        readout.textContent = `${near.name}${near.axis ? `, ${words(near.size)} mm rms` : ''}: ${near.never ? 'over ' : ''}${words(near.speed)} km/h`;
+        readout.textContent = `${near.name}${near.axis ? `, ${words(near.size)} ${data.size.unit} rms` : ''}: ${near.never ? 'over ' : ''}${words(near.speed)} ${data.speed.unit}`;
         readout.style.top = `${Math.max(near.y - 30, 0)}px`;
         readout.style.left = `${Math.min(Math.max(near.x, 120), drawn.size[0] - 120)}px`;
       });
@@ -558,7 +561,8 @@ if (!window.trackrideStudy) {
     picture: (data) => limitPanels(data, 1000, 460, LIGHT).svg,
     table: (data) => [['vehicle', 'limit', 'ground', 'size [mm]', 'speed [km/h]', 'slowest', 'fastest', 'note'],
       ...['own', 'baseline'].flatMap((whose) => ['ride', 'shock'].flatMap((name) => data[whose][name].map((one) =>
-        [whose === 'own' ? 'now' : whose, name, one.name, one.size, one.speed, one.low, one.high,
+        [whose === 'own' ? 'now' : whose, name, one.name, inMetric(one.size, data.size),
+          ...[one.speed, one.low, one.high].map((speed) => inMetric(speed, data.speed)),
           one.never ? 'never over the bound' : one.why || (one.again ? 'below the bound again beyond' : '')])))],
   };
 
@@ -569,7 +573,7 @@ if (!window.trackrideStudy) {
     const high = Math.max((height - 2 * (head + foot)) / 2, 100), total = 2 * (head + high + foot);
     const inks = [colours.ink, colours.line, colours.now];
     const svg = make('svg', {viewBox: `0 0 ${width} ${total}`, width, height: total, xmlns: 'http://www.w3.org/2000/svg', role: 'img',
-      'aria-label': `Measured and simulated acceleration, ${words(data.rms)} m/s² rms apart`});
+      'aria-label': `Measured and simulated acceleration, ${words(data.rms)} ${data.acceleration.unit} rms apart`});
     const span = (lists) => {
       const all = lists.flat().filter((value) => value !== null);
       return [Math.min(...all), Math.max(...all)];
@@ -592,10 +596,10 @@ if (!window.trackrideStudy) {
       'stroke-linejoin': 'round',
     })));
     const [low, most] = span(data.curves), pad = 0.05 * (most - low || 1);
-    draw_(frame(head, 'Vertical acceleration, m/s²', 'Time, s', [data.t[0], data.t.at(-1)], [low - pad, most + pad]),
+    draw_(frame(head, `Vertical acceleration, ${data.acceleration.unit}`, 'Time, s', [data.t[0], data.t.at(-1)], [low - pad, most + pad]),
       data.curves.map((ys) => [data.t, ys]));
     const top = 2 * head + high + foot, [, tallest] = span(data.spectra.map(({y}) => y));
-    draw_(frame(top, 'Its spectrum, m/s² rms in each band', 'Frequency, Hz', [0, Math.max(...data.spectra.map(({x}) => x.at(-1)))], [0, 1.05 * tallest || 1]),
+    draw_(frame(top, `Its spectrum, ${data.acceleration.unit} rms in each band`, 'Frequency, Hz', [0, Math.max(...data.spectra.map(({x}) => x.at(-1)))], [0, 1.05 * tallest || 1]),
       data.spectra.map(({x, y}) => [x, y]));
     let place = end;
     data.curves.map((_, k) => k).reverse().forEach((k) => {
@@ -630,12 +634,12 @@ if (!window.trackrideStudy) {
       const go = button('Fit', 'Find the values that come nearest to the record', () => choose({fit: study.choice.fit + 1}));
       go.disabled = !fitted.length || Boolean(data.busy);
       go.className = 'main';
-      const line = html('p', {className: 'line'}, html('b', {textContent: `${words(data.rms)} m/s²`}),
-        ` rms apart · the run begins at ${words(data.lag)} s of the record · offset ${words(data.offset)} m/s²`);
+      const line = html('p', {className: 'line'}, html('b', {textContent: `${words(data.rms)} ${data.acceleration.unit}`}),
+        ` rms apart · the run begins at ${words(data.lag)} s of the record · offset ${words(data.offset)} ${data.acceleration.unit}`);
       const tools = html('div', {className: 'tools row'}, pass, ...chips, add, go, html('span', {textContent: data.busy || data.said}));
       const parts = [line, svg, tools];
       if (fit) parts.push(html('p', {className: 'line'},
-        `Fitted: ${words(fit.rms)} m/s² rms apart. `, ...fit.rows.map((row) => html('span', {},
+        `Fitted: ${words(fit.rms)} ${data.acceleration.unit} rms apart. `, ...fit.rows.map((row) => html('span', {},
           `${row.label} `, html('b', {textContent: `${words(row.value, 4)} ${row.unit}`}),
           ` (${words(row.low)} … ${words(row.high)}${row.end ? ', at the end of its range' : ''}) `)),
         button('Apply', 'Give the parameters these values', () =>
@@ -646,7 +650,7 @@ if (!window.trackrideStudy) {
     more: upload,
     picture: (data) => measuredPanels(data, 900, 620, LIGHT).svg,
     table: (data) => [['t [s]', ...data.curves.map((_, k) => `${NAMES[k]} [m/s^2]`)],
-      ...data.t.map((time, k) => [time, ...data.curves.map((ys) => ys[k])])],
+      ...data.t.map((time, k) => [time, ...data.curves.map((ys) => inMetric(ys[k], data.acceleration))])],
   };
 
   // ── The tab ──

@@ -1,4 +1,7 @@
-"""In which unit the loads of a vehicle are told: one rule for plots, maps, tables, labels and the card."""
+"""In which units the loads of a vehicle, and the figures of its runs, are told.
+
+One rule for plots, maps, tables, labels and the card.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from app.format.units import METRIC, POUND_FORCE, Unit, Units
 from model.analysis.figures import LOAD_PEAK, Row, comparison
 from model.dynamics.vehicle import System
 from model.simulation.trajectory import Trajectory
@@ -33,17 +37,19 @@ class LoadUnit(NamedTuple):
 
 
 KILONEWTON, NEWTON = LoadUnit("kN", 1e3, 2), LoadUnit("N", 1.0, 1)
+POUNDS, FEW_POUNDS = LoadUnit("lbf", POUND_FORCE, 0), LoadUnit("lbf", POUND_FORCE, 2)
 
 
-def load_unit(system: System) -> LoadUnit:
+def load_unit(system: System, units: Units = METRIC) -> LoadUnit:
     """The unit for all loads of this vehicle."""
-    return KILONEWTON if float(system.weight.sum()) > SMALL * (system.n + system.m) else NEWTON
+    large, small = (KILONEWTON, NEWTON) if units.force == METRIC.force else (POUNDS, FEW_POUNDS)
+    return large if float(system.weight.sum()) > SMALL * (system.n + system.m) else small
 
 
-def comparison_rows(now: Trajectory, baseline: Trajectory | None) -> list[Row]:
+def comparison_rows(now: Trajectory, baseline: Trajectory | None, units: Units = METRIC) -> list[Row]:
     """The ride figures of a run beside those of another, as `comparison` gives them, loads in the run's own unit."""
-    unit = load_unit(now.system)
-    return [_told_in(unit, row) for row in comparison(now, baseline)]
+    unit = load_unit(now.system, units)
+    return [told_row(row, unit, units) for row in comparison(now, baseline)]
 
 
 def heading(label: str, rows: Sequence[Row]) -> str:
@@ -52,10 +58,13 @@ def heading(label: str, rows: Sequence[Row]) -> str:
     return f"{label}, {unit}" if unit else label
 
 
-def _told_in(unit: LoadUnit, row: Row) -> Row:
-    if row.unit != LOAD_PEAK.unit:
-        return row
-    now, baseline = (
-        None if load is None else load * KILONEWTON.newtons / unit.newtons for load in (row.now, row.baseline)
-    )
-    return replace(row, unit=unit.name, now=now, baseline=baseline)
+def figure_unit(unit: str, loads: LoadUnit, units: Units) -> Unit:
+    """What the unit of a figure is told in."""
+    return Unit(loads.name, KILONEWTON.newtons / loads.newtons) if unit == LOAD_PEAK.unit else units.of(unit)
+
+
+def told_row(row: Row, loads: LoadUnit, units: Units) -> Row:
+    """A figure in the units in which it is told."""
+    unit = figure_unit(row.unit, loads, units)
+    now, baseline = (None if value is None else value * unit.factor for value in (row.now, row.baseline))
+    return replace(row, unit=unit.name, now=now, baseline=baseline, resolution=row.resolution * unit.factor)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol
 
 from app.runs.study_choice import StudyChoice
@@ -159,6 +159,9 @@ class Actions(Protocol):
 
     def set_dark(self, dark: bool) -> None:
         """Choose the look of the page."""
+
+    def choose_units(self, chosen: Mapping[str, str]) -> None:
+        """Tell some quantities in other units: names in app.format.units.CHOICES, and one of both units of each."""
 
     def enlarge_plots(self) -> None:
         """Let the plots stand over the view, or put them back."""

@@ -1,6 +1,6 @@
 """Sliders and boxes for single parameters, as the parameter table describes them.
 
-A box shows a value in the table's friendlier unit (`shown_unit`); what the session is asked for is as in a file.
+A box shows a value in the unit that its parameter is shown in; what the session is asked for is as in a file.
 """
 
 from __future__ import annotations
@@ -9,7 +9,18 @@ from typing import Any
 
 import viser
 
-from app.format.parameters import choice_words, file_number, file_value, hint, shown_label, shown_number, shown_text
+from app.format.parameters import (
+    choice_words,
+    file_number,
+    file_value,
+    hint,
+    shown_label,
+    shown_number,
+    shown_text,
+    slider_numbers,
+    step_number,
+)
+from app.format.units import Units
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from model.config.parameters import Parameter
@@ -39,6 +50,7 @@ class Control:
     ) -> None:
         """slider: a number has a slider; None: if it is one of the first sliders."""
         self.parameter = parameter
+        self._held = value  # that was shown last, as in a file
         self._slider = (parameter.what_if if slider is None else slider) and parameter.kind in ("number", "integer")
         self._slider &= not _typed(parameter)
         label, help_text = shown_label(parameter), hint(parameter)
@@ -52,14 +64,14 @@ class Control:
         elif parameter.kind == "flag":
             self._one = gui.add_checkbox(label, value, hint=help_text)
         else:
-            first = shown_number(parameter, value[0] if isinstance(value, tuple) else value)
+            single = value[0] if isinstance(value, tuple) else value
+            first = shown_number(parameter, single)
             if self._slider:
-                self._reach = self._range(first)  # of the slider, before it is widened
+                self._reach = slider_numbers(parameter, single)  # of the slider, before it is widened
                 low, high, step = self._reach
                 self._one = gui.add_slider(label, min(low, first), max(high, first), step, first, hint=help_text)
             else:
-                step = shown_number(parameter, parameter.step)
-                self._one = gui.add_number(label, float(first), step=float(step), hint=help_text)
+                self._one = gui.add_number(label, float(first), step=step_number(parameter), hint=help_text)
             self._one.precision = max(PRECISION, _decimals(first))
         ask = actions.enter if _typed(parameter) else actions.change
         self._one.on_update(by_user(lambda event: ask(parameter.key, self.value), actions.fail))
@@ -75,13 +87,15 @@ class Control:
         if isinstance(shown, str) and self.parameter.kind == "choice":
             return next((choice for choice in self.parameter.choices if choice_words(choice) == shown), shown)
         if isinstance(shown, str):
-            return file_value(self.parameter, shown)
-        return shown if isinstance(shown, bool) else file_number(self.parameter, shown)
+            return file_value(self.parameter, shown, self._held)
+        if isinstance(shown, bool):
+            return shown
+        return file_number(self.parameter, shown, () if isinstance(self._held, tuple) else (self._held,))
 
     @property
     def listed_value(self) -> Any:
         """The values in the box for a list, as in a file."""
-        return None if self._list is None else file_value(self.parameter, self._list.value)
+        return None if self._list is None else file_value(self.parameter, self._list.value, self._held)
 
     @property
     def box(self) -> str:
@@ -107,7 +121,9 @@ class Control:
             if as_list and self._list.value != shown_text(self.parameter, value):
                 self._list.value = shown_text(self.parameter, value)  # also where it was typed in another way
         self._fit(value)
-        if as_list or self.value == value:
+        shown_already = not as_list and self.value == value
+        self._held = value
+        if as_list or shown_already:
             return
         if _typed(self.parameter):
             self._one.value = shown_text(self.parameter, value)
@@ -126,14 +142,9 @@ class Control:
             return
         shown = shown_number(self.parameter, value)
         if not self._reach[0] <= shown <= self._reach[1]:
-            self._reach = self._range(shown)
+            self._reach = slider_numbers(self.parameter, value)
         low, high, step = self._reach
         self._one.min, self._one.max, self._one.step = min(low, shown), max(high, shown), step
-
-    def _range(self, shown: float) -> tuple[float, float, float]:
-        """Ends and step of the slider for a value, as shown."""
-        low, high, step = self.parameter.slider(file_number(self.parameter, shown))
-        return tuple(float(shown_number(self.parameter, bound)) for bound in (low, high, step))  # type: ignore[return-value]
 
     def widen(self, value: Any) -> None:
         """Widen the range of the slider so that this value is in it."""
@@ -141,13 +152,22 @@ class Control:
             shown = shown_number(self.parameter, value)
             self._one.min, self._one.max = min(self._one.min, shown), max(self._one.max, shown)
 
-    def describe(self, parameter: Parameter) -> None:
-        """Show the same parameter in another unit."""
-        if parameter != self.parameter:
-            self.parameter = parameter
-            self._one.label, self._one.hint = shown_label(parameter), hint(parameter)
-            if self._list is not None:
-                self._list.label, self._list.hint = shown_label(parameter), hint(parameter) + ONE_EACH
+    def describe(self, parameter: Parameter, units: Units) -> None:
+        """Show the same parameter, which may be a rate at the wheel or of the spring itself, in these units."""
+        parameter = units.told(parameter)
+        if parameter == self.parameter:
+            return
+        value = self.listed_value if isinstance(self._held, tuple) and self._list is not None else self.value
+        told = parameter.kind == "choice" or not isinstance(value, str)  # else it is a text that means nothing
+        self.parameter = parameter
+        self._one.label, self._one.hint = shown_label(parameter), hint(parameter)
+        if self._list is not None:
+            self._list.label, self._list.hint = shown_label(parameter), hint(parameter) + ONE_EACH
+        if self._slider:
+            self._reach = slider_numbers(parameter, value[0] if isinstance(value, tuple) else value)
+        elif parameter.kind in ("number", "integer") and not _typed(parameter):
+            self._one.step = step_number(parameter)
+        self.show(value if told else self._held)
 
     def enable(self, applies: bool) -> None:
         """Let it be used, or show that it has no effect now: a slider turns grey, a box of a road disappears."""

@@ -13,6 +13,7 @@ from app.panels.callbacks import by_user
 from app.panels.files_panel import DATA_BUTTONS, FIGURE_BUTTONS, MOTION_BUTTONS, PROJECT
 from app.panels.parameter_panel import BOXED
 from app.panels.plot_panel import TABS
+from app.panels.units_panel import SYSTEMS
 from model.config.config import Config
 from model.config.parameters import PARAMETERS
 
@@ -34,6 +35,8 @@ def add_palette(gui: viser.GuiApi, presets: Mapping[str, Config], actions: Actio
         for name, what in buttons.items():
             add(f"{group}: {name}", "Export", partial(actions.export, what))
     add("Save project", "Export", partial(actions.export, PROJECT))
+    for name, units in SYSTEMS.items():
+        add(f"{name} units", "Units", partial(actions.choose_units, units.chosen))
     for name, preset in presets.items():
         add(preset.name, "Preset", partial(actions.load, name))
 

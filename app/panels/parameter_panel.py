@@ -12,6 +12,7 @@ import viser
 from app.format.assets import asset
 from app.format.markup import element, joined, running, style
 from app.format.parameters import file_value, value_text
+from app.format.units import METRIC, Units
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.panels.controls import IMAGINARY, IMAGINARY_SWITCH, Control
@@ -36,6 +37,7 @@ class ParameterPanel:
     ) -> None:
         """presets: name -> configuration; `preset` is shown as the chosen one, `config` in the controls."""
         self._gui, self._actions = gui, actions
+        self._units = METRIC
         self._titles = _unique_titles(presets)
         self._preset: Any = gui.add_dropdown(
             "Preset",
@@ -77,7 +79,7 @@ class ParameterPanel:
             make, value = KINDS.get(parameter.kind, Control), _value(self._shown, parameter)
             with self._folders[parameter.group]:
                 self._controls[parameter.key] = control = make(self._gui, parameter, value, self._actions)
-            _say(control, self._shown)
+            self._say(control, self._shown)
         self._tell_rows()
 
     def set_first(self, keys: Iterable[str]) -> None:
@@ -91,7 +93,7 @@ class ParameterPanel:
                 with self._first_place:
                     control = Control(self._gui, PARAMETER[key], value, self._actions, slider=True)
                 self._first[key] = control
-                _say(control, self._shown)
+                self._say(control, self._shown)
         self._tell_rows()
 
     def mark(self, request: Request) -> None:
@@ -107,8 +109,14 @@ class ParameterPanel:
             if parameter.applies_to(after.road.type):
                 usual = old.get(key) if parameter.applies_to(before.road.type) else parameter.default
                 if usual != new.get(key):
-                    was[key] = value_text(parameter, usual)
+                    was[key] = value_text(self._units.told(parameter), usual)
         self._changes.content = str(element("trackride-changes", of=json.dumps(was, ensure_ascii=False)))
+
+    def set_units(self, units: Units) -> None:
+        """Show all values in these units."""
+        self._units, self._marked = units, None
+        for key, control in (*self._controls.items(), *self._first.items()):
+            control.describe(self._shown.parameter(key), units)
 
     def lead_to(self, key: str) -> None:
         """Open the folder of a parameter's control, and give it the keys."""
@@ -171,18 +179,17 @@ class ParameterPanel:
             others = ()
         for key, control in (*self._controls.items(), *self._first.items()):
             if SECTION_OF[key] not in others:
-                _say(control, config, touched=key in touched)
+                self._say(control, config, touched=key in touched)
 
-
-def _say(control: Control, config: Config, *, touched: bool = False) -> None:
-    """Let a control show what the configuration says; not its value where the user may still move it."""
-    key = control.parameter.key
-    applies = control.parameter.applies_to(config.road.type)
-    control.describe(config.parameter(key))
-    if applies:
-        (control.widen if touched else control.show)(config.value(key))
-    with_track = config.vehicle.imaginary_wheels.enabled
-    control.enable(applies and (with_track or not key.startswith(IMAGINARY) or key == IMAGINARY_SWITCH))
+    def _say(self, control: Control, config: Config, *, touched: bool = False) -> None:
+        """Let a control show what the configuration says; not its value where the user may still move it."""
+        key = control.parameter.key
+        applies = control.parameter.applies_to(config.road.type)
+        control.describe(config.parameter(key), self._units)
+        if applies:
+            (control.widen if touched else control.show)(config.value(key))
+        with_track = config.vehicle.imaginary_wheels.enabled
+        control.enable(applies and (with_track or not key.startswith(IMAGINARY) or key == IMAGINARY_SWITCH))
 
 
 def _value(config: Config, parameter: Parameter) -> Any:

@@ -6,6 +6,7 @@ from typing import Any
 
 import viser
 
+from app.format.units import METRIC, Units
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.panels.page_layout import PageLayout
@@ -85,10 +86,10 @@ class PlaybackPanel:
         self._show_mode(False, playback.playing)
         self._show_time(playback)
 
-    def show_drive(self, playback: Playback, state: DriveState | None) -> None:
+    def show_drive(self, playback: Playback, state: DriveState | None, units: Units = METRIC) -> None:
         """Show how far the drive has come, or where in its past the user is."""
         self._show_mode(True, playback.playing)
-        self._driven.value = "starting…" if state is None else driven_text(state, playback)
+        self._driven.value = "starting…" if state is None else driven_text(state, playback, units)
         if state is not None and state.stands:
             self._show_time(playback)
 
@@ -120,10 +121,11 @@ def covered(layout: PageLayout) -> float:
     return (player_height(layout) + GAP) / (layout.height - layout.below) if layout.plots == "under" else 0.0
 
 
-def driven_text(state: DriveState, playback: Playback) -> str:
+def driven_text(state: DriveState, playback: Playback, units: Units = METRIC) -> str:
     """ "1:23 · 347 m · 0.99× of 1× real time"."""
     minutes, seconds = divmod(int(state.time), 60)
-    where = f"{minutes}:{seconds:02d} · {state.distance:.0f} m"
+    unit = units.of("m")
+    where = f"{minutes}:{seconds:02d} · {state.distance * unit.factor:.0f}{unit.after}"
     asked = f"{playback.speed:g}× real time"
     if state.ended:
         return f"{where} · ended"

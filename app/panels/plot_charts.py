@@ -113,7 +113,7 @@ class Charts:
 def _shapes(plots: tuple[Plot, ...]) -> list[tuple[object, ...]]:
     """What a chart cannot change once it is made."""
     return [
-        (plot.title, plot.note, plot.logarithmic, *((curve.label, curve.kind) for curve in plot.curves))
+        (plot.title, plot.unit, plot.note, plot.logarithmic, *((curve.label, curve.kind) for curve in plot.curves))
         for plot in plots
     ]
 

@@ -9,6 +9,7 @@ import json
 
 from app.format.assets import asset
 from app.format.markup import element, joined, running, style
+from app.format.units import FINER
 from app.plots.curves import Plot
 from app.plots.spectrum import Mark
 from model.analysis.signals import window
@@ -25,7 +26,7 @@ TIME_KEY, OTHER_KEY = "trackride-time", "trackride-frequency"  # charts with the
 
 def plot_page() -> str:
     """HTML that goes into the page once: script and rules."""
-    return str(joined((running(asset("plots.js")), style(asset("plots.css")))))
+    return str(joined((running(asset("plots.js"), data_finer=json.dumps(FINER)), style(asset("plots.css")))))
 
 
 def tab_html(name: str) -> str:

@@ -17,6 +17,7 @@ import viser
 
 from app.format.colours import Palette, wheel_palette
 from app.format.markup import element
+from app.format.units import METRIC, Units
 from app.panels.actions import Actions
 from app.panels.page_layout import PageLayout
 from app.panels.plot_charts import Charts
@@ -56,7 +57,7 @@ class PlotPanel:
     def __init__(
         self, client: viser.ClientHandle, panel: Any, layout: PageLayout, dark: bool, actions: Actions
     ) -> None:
-        self._client, self._layout, self._dark = client, layout, dark
+        self._client, self._layout, self._dark, self._units = client, layout, dark, METRIC
         self._run: Trajectory | None = None
         self._baseline: Trajectory | None = None
         self._beside: tuple[Beside, ...] = ()
@@ -91,7 +92,7 @@ class PlotPanel:
             self._trust = gui.add_html("")
             gui.add_html(errata_html())
         with tabs[ABOUT]:
-            gui.add_html(about_html())
+            self._about = gui.add_html(about_html())
         with tabs[LOADS]:
             gui.add_html(plot_page())
             self._now = gui.add_html(now_html(0.0))
@@ -178,6 +179,12 @@ class PlotPanel:
         self._redraw()
         self.redraw_spectrum()
 
+    def set_units(self, units: Units) -> None:
+        """Tell all quantities in these units."""
+        self._units = units
+        self._about.content = about_html(units)
+        self._follow()
+
     def _behind(self) -> list[Part]:
         """Parts that do not show the newest yet."""
         return [part for part in self._parts if part.version != self._version and self._run is not None]
@@ -213,7 +220,9 @@ class PlotPanel:
     def _plot(
         self,
         run: Trajectory,
-        plots_of: Callable[[Trajectory, Palette, Trajectory | None, int | None, Sequence[Beside]], tuple[Plot, ...]],
+        plots_of: Callable[
+            [Trajectory, Palette, Trajectory | None, int | None, Sequence[Beside], Units], tuple[Plot, ...]
+        ],
         charts: Charts,
         taken: float = 0.0,
     ) -> None:
@@ -223,26 +232,26 @@ class PlotPanel:
         """
         palette = wheel_palette(run.system.n, run.system.m, self._dark)
         wheel = self._wheel if self._wheel is not None and self._wheel < len(palette.wheels) else None
-        plots = plots_of(run, palette, self._baseline, wheel, self._beside)
+        plots = plots_of(run, palette, self._baseline, wheel, self._beside, self._units)
         with self._client.atomic():
             charts.show(plots, self._layout.chart_height(len(plots), taken), self._layout.scale)
         self._client.flush()
 
     def _show_comfort(self, run: Trajectory) -> None:
-        self._headline.content = comfort_headline(run, self._driving)
-        self._comfort.content = comfort_page(run, self._baseline, self._driving)
+        self._headline.content = comfort_headline(run, self._driving, self._units)
+        self._comfort.content = comfort_page(run, self._baseline, self._driving, self._units)
 
     def _show_spectrum(self, run: Trajectory) -> None:
         colour = wheel_palette(1, 0, self._dark).hull
-        self.spectrum.show(run, self._baseline, colour, self._layout)
+        self.spectrum.show(run, self._baseline, colour, self._layout, self._units)
         self._say_stretch(SPECTRUM, run)
 
     def _show_map(self, run: Trajectory) -> None:
-        self._map.content = load_map(run, self._baseline)
+        self._map.content = load_map(run, self._baseline, self._units)
         self._say_stretch(LOAD_MAP, run)
 
     def _show_trust(self, run: Trajectory) -> None:
-        self._trust.content = trust_html(run, self._driving, self._road)
+        self._trust.content = trust_html(run, self._driving, self._road, self._units)
         self._say_stretch(TRUST, run)
 
     def _say_stretch(self, tab: str, run: Trajectory) -> None:

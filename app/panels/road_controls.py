@@ -11,6 +11,7 @@ import viser
 
 from app.format.markup import element
 from app.format.parameters import choice_words, hint, shown_text
+from app.format.units import METRIC, Units
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.panels.road_parts import ADDED, parts_from, parts_text
@@ -28,12 +29,20 @@ class RoadControl:
 
     def __init__(self, parameter: Parameter, value: Any) -> None:
         self.parameter, self.value = parameter, value
+        self.units = METRIC
 
     def widen(self, value: Any) -> None:
         """Nothing: there is no range."""
 
-    def describe(self, parameter: Parameter) -> None:
-        """Nothing: there is one unit."""
+    def show(self, value: Any) -> None:
+        """Show this value."""
+        raise NotImplementedError
+
+    def describe(self, parameter: Parameter, units: Units) -> None:
+        """Show the value in these units."""
+        if units != self.units:
+            self.units = units
+            self.show(self.value)
 
 
 class ProfileControl(RoadControl):
@@ -59,7 +68,7 @@ class ProfileControl(RoadControl):
 
     def show(self, value: Any) -> None:
         self.value = value
-        extent = str(element("div", shown_text(self.parameter, value), class_=EXTENT))
+        extent = str(element("div", self.units.reword(shown_text(self.parameter, value)), class_=EXTENT))
         if self._extent.content != extent:
             self._extent.content = extent
 
@@ -91,11 +100,11 @@ class PartsControl(RoadControl):
         self._taking.on_click(by_user(lambda event: actions.take_from_road(), actions.fail))
 
     def _meant(self) -> Any:
-        return parts_from(self._text.value, self.value)
+        return parts_from(self._text.value, self.value, self.units)
 
     def show(self, value: Any) -> None:
         self.value = value
-        text = parts_text(value)
+        text = parts_text(value, self.units)
         if self._text.value != text:
             self._text.value = text
 

@@ -10,6 +10,7 @@ import viser
 from app.format.assets import asset
 from app.format.load_unit import comparison_rows
 from app.format.markup import Content, Html, element, joined, running, style
+from app.format.units import METRIC, Units
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.plots.curves import Beside
@@ -48,10 +49,12 @@ class RunsPanel:
         acts = {PIN: actions.pin, SWAP: actions.swap, CLEAR: actions.clear_baseline}
         baseline.on_click(by_user(lambda event: acts[event.target.value](), actions.fail))
 
-    def compare(self, now: Trajectory, baseline: Trajectory | None, beside: Sequence[Beside] = ()) -> None:
+    def compare(
+        self, now: Trajectory, baseline: Trajectory | None, beside: Sequence[Beside] = (), units: Units = METRIC
+    ) -> None:
         """Show the figures of a run of at least one sample, and those of the baseline and of the runs beside."""
-        rows = comparison_rows(now, baseline)
-        others = [Other(other.name, other.colour, comparison_rows(now, other.run)) for other in beside]
+        rows = comparison_rows(now, baseline, units)
+        others = [Other(other.name, other.colour, comparison_rows(now, other.run, units)) for other in beside]
         self._figures.content = comparison_table(rows, baseline is not None, others)
 
     def show(

@@ -7,6 +7,7 @@ from typing import Any
 
 import viser
 
+from app.format.units import METRIC, Units
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.panels.page_layout import PageLayout
@@ -20,7 +21,7 @@ from model.config.config import FlatRoad
 from model.dynamics.equilibrium import NoEquilibriumError
 from model.simulation.trajectory import Trajectory
 
-AMPLITUDE, DENSITY = "Amplitude, m/s²", "Power density, m²/s³"
+AMPLITUDE, DENSITY = "Amplitude", "Power density"
 HULL, SEAT = "Centre of mass", "Driver's seat"
 NO_MODE = "– the run –"
 BELOW_CHART = 1e9  # order of what stands there; a chart that is made anew would otherwise come after it
@@ -60,7 +61,14 @@ class SpectrumPanel:
             box.on_update(by_user(lambda event: actions.redraw_spectrum(), actions.fail))
         self._choice.on_update(by_user(lambda event: actions.show_mode(), actions.fail))
 
-    def show(self, run: Trajectory, baseline: Trajectory | None, colour: str, layout: PageLayout) -> None:
+    def show(
+        self,
+        run: Trajectory,
+        baseline: Trajectory | None,
+        colour: str,
+        layout: PageLayout,
+        units: Units = METRIC,
+    ) -> None:
         """Show a run, beside its baseline, in a CSS colour."""
         self._modes = None
         with suppress(NoEquilibriumError):
@@ -75,6 +83,7 @@ class SpectrumPanel:
             density=self._kind.value == DENSITY,
             at_seat=self._place.value == SEAT,
             logarithmic=self._logarithmic.value,
+            units=units,
         )
         self._charts.show((plot,), layout.spectrum_height(), layout.scale)
         self._marks.content = marks_html(marks)

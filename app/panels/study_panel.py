@@ -8,14 +8,15 @@ from typing import Any
 import viser
 
 from app.format.assets import asset
-from app.format.load_unit import KILONEWTON
 from app.format.markup import element, joined, running, style
 from app.format.parameters import file_number
+from app.format.units import METRIC, Units
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.panels.parameter_panel import ParameterPanel
-from app.plots.study_data import Data, FigureUnit
+from app.plots.study_data import Data
 from app.runs.study_choice import PROFILER, VARIABLE, VIEWS, StudyChoice, choice_from, figure_names
+from model.analysis.figures import FIGURE
 from model.config.parameters import PARAMETER, PARAMETERS
 
 SAYS = "Study says"  # label of the box by which the page tells something; nobody sees it
@@ -29,7 +30,7 @@ class StudyPanel:
     """
 
     def __init__(self, gui: viser.GuiApi, container: Any, controls: ParameterPanel, actions: Actions) -> None:
-        self._actions = actions
+        self._actions, self._units = actions, METRIC
         with container:
             page = gui.add_html("")
             says = self._add_box(gui)
@@ -38,7 +39,7 @@ class StudyPanel:
         self._choice, self._choices = gui.add_html(""), 0
         offer = {
             "choice": StudyChoice().__dict__,
-            "figures": [FigureUnit(name, KILONEWTON).data for name in figure_names()],
+            "figures": [{"name": name, "label": FIGURE[name].label} for name in figure_names()],
             "keys": [[p.key, p.label, p.group] for p in PARAMETERS if p.key in VARIABLE],
         }
         page.content = str(element("trackride-study", data_says=says))
@@ -68,6 +69,10 @@ class StudyPanel:
         at = json.dumps(choice.__dict__, ensure_ascii=False)
         self._choice.content = str(element("trackride-study-choice", at=at, count=str(self._choices)))
 
+    def set_units(self, units: Units) -> None:
+        """Take the page's numbers in these units; what is drawn follows with the next data."""
+        self._units = units
+
     def _take(self, text: str) -> None:
         """What the page tells: a choice, or the value of a parameter, as shown."""
         try:
@@ -82,4 +87,4 @@ class StudyPanel:
         elif kind == "set" and isinstance(content, dict):
             for key, shown in content.items():
                 if key in VARIABLE and isinstance(shown, int | float):
-                    self._actions.steer(key, file_number(PARAMETER[key], shown))
+                    self._actions.steer(key, file_number(self._units.told(PARAMETER[key]), shown))

@@ -9,6 +9,7 @@ import viser
 from app.format.assets import asset
 from app.format.load_unit import LoadUnit
 from app.format.markup import element, joined, style
+from app.format.units import METRIC, Unit, Units
 from app.panels.actions import Actions
 from app.panels.callbacks import by_user
 from app.panels.page_layout import PageLayout
@@ -51,13 +52,13 @@ class WheelCard:
             height = int(HEIGHT * layout.scale)
             self._panel.float(x=layout.player_x, y=GAP, width=layout.player_width, height=height)
 
-    def show(self, state: WheelState, colour: str, unit: LoadUnit) -> None:
-        """Fill in the card; colour: the wheel's, CSS; unit: of forces."""
+    def show(self, state: WheelState, colour: str, unit: LoadUnit, units: Units) -> None:
+        """Fill in the card; colour: the wheel's, CSS; unit: of forces; units: of all else."""
         if self._panel is not None:
-            self._text.content = card(state, colour, unit)
+            self._text.content = card(state, colour, unit, units)
 
 
-def card(state: WheelState, colour: str, unit: LoadUnit) -> str:
+def card(state: WheelState, colour: str, unit: LoadUnit, units: Units = METRIC) -> str:
     """HTML of a wheel's figures, forces in that unit."""
     family = "Road wheel" if state.name.startswith("R") else "Imaginary wheel"
     in_air = state.penetration is None
@@ -65,10 +66,10 @@ def card(state: WheelState, colour: str, unit: LoadUnit) -> str:
         ("Normal load", unit.text(state.normal_load)),
         ("Share of all loads", _figure(_percent(state.load_share), 1, "%")),
         ("Traction", unit.text(state.traction)),
-        ("Penetration", _figure(None if state.penetration is None else 1e3 * state.penetration, 1, "mm")),
+        ("Penetration", _told(None if state.penetration is None else 1e3 * state.penetration, 1, units.of("mm"))),
         ("Load at rest", unit.text(state.static_load)),
         ("Share of torque", _figure(_percent(state.torque_share), 1, "%")),
-        ("Slip of the rim", _figure(state.slip_velocity, 3, "m/s")),
+        ("Slip of the rim", _told(state.slip_velocity, 3, units.of("m/s"))),
         ("Arm in the hull", _figure(state.arm_angle, 2, "°")),
     )
     sign = element("i", style=f"background:{colour}")
@@ -81,6 +82,10 @@ def card(state: WheelState, colour: str, unit: LoadUnit) -> str:
 
 def _percent(share: float | None) -> float | None:
     return None if share is None else 100 * share
+
+
+def _told(value: float | None, digits: int, unit: Unit) -> str:
+    return _figure(None if value is None else value * unit.factor, digits + unit.finer, unit.name)
 
 
 def _figure(value: float | None, digits: int, unit: str) -> str:

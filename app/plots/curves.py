@@ -11,11 +11,12 @@ import numpy as np
 
 from app.format.colours import Palette
 from app.format.load_unit import LoadUnit, load_unit
+from app.format.units import FINER, METRIC, Unit, Units
 from app.plots.thinning import thin
 from model.analysis.ride import imaginary_shares
 from model.simulation.trajectory import Trajectory
 
-DECIMALS = 2  # of the values that are plotted; the page shows no more (plots.js)
+DECIMALS = 2  # of the values that are plotted, and FINER; the page shows no more (plots.js)
 OTHER_SIZE = 10.0  # times the weight on a wheel, from which on loads of two vehicles share no axis
 TIME = "Time, s"
 
@@ -78,6 +79,7 @@ def load_plots(
     baseline: Trajectory | None = None,
     wheel: int | None = None,
     beside: Sequence[Beside] = (),
+    units: Units = METRIC,
 ) -> tuple[Plot, ...]:
     """Normal load of road wheels and of imaginary wheels, in the vehicle's unit, and the imaginary ones' share, %.
 
@@ -88,7 +90,7 @@ def load_plots(
     out, or of the largest load of the family.
     """
     n, m = run.system.n, run.system.m
-    unit = load_unit(run.system)
+    unit = load_unit(run.system, units)
     compared = beside_loads(run, baseline)
     others = [other for other in beside if beside_loads(run, other.run) is not None]
     note = "" if compared is baseline else "baseline: other size"
@@ -99,7 +101,7 @@ def load_plots(
     plots = [
         time_plot(
             title,
-            unit.name,
+            Unit(unit.name),
             (0.0, _wheel_weight(run) / unit.newtons),
             curves,
             values,
@@ -114,7 +116,9 @@ def load_plots(
     ]
     if m:
         share = [Curve("Share", palette.hull)]
-        plots += [time_plot("Load carried by imaginary wheels", "%", (0.0, 1.0), share, _share, run, baseline, beside)]
+        plots += [
+            time_plot("Load carried by imaginary wheels", Unit("%"), (0.0, 1.0), share, _share, run, baseline, beside)
+        ]
     return tuple(plots)
 
 
@@ -140,7 +144,7 @@ def wheel_curves(letter: str, colours: Sequence[str], first: int, single: int | 
 
 def time_plot(
     title: str,
-    unit: str,
+    unit: Unit,
     least: tuple[float, float] | None,
     curves: list[Curve],
     values: Callable[[Trajectory], np.ndarray],
@@ -153,7 +157,8 @@ def time_plot(
 ) -> Plot:
     """A plot over time. values: run -> (N, C), a column for each curve; at_rest: a dotted line and its height.
 
-    peaks: time and value of each curve's peak, in the curves' order; those outside of the run's samples are left out.
+    unit: in which values, heights and peaks are told. peaks: time and value of each curve's peak, in the curves'
+    order; those outside of the run's samples are left out.
     """
     shown = values(run)
     columns, finite, own = [shown], np.isfinite(shown), curves
@@ -177,12 +182,15 @@ def time_plot(
         height, line = at_rest
         curves = [*curves, line]
         thinned = np.vstack([thinned.T, np.full(len(time), height)]).T
+    decimals = DECIMALS + FINER.get(unit.name, 0)
     marked = tuple(
-        Peak(k, float(at), round(float(value), DECIMALS))
+        Peak(k, float(at), round(float(value) * unit.factor, decimals))
         for k, (at, value) in enumerate(peaks)
         if len(time) and time[0] <= at <= time[-1]
     )
-    return Plot(title, unit, tuple(curves), least, time, np.round(thinned, DECIMALS), peaks=marked, note=note)
+    shown = np.round(thinned * unit.factor, decimals)
+    in_view = None if least is None else (least[0] * unit.factor, least[1] * unit.factor)
+    return Plot(title, unit.name, tuple(curves), in_view, time, shown, peaks=marked, note=note)
 
 
 def _largest(values: np.ndarray, curves: Sequence[Curve]) -> np.ndarray | None:

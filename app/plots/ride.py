@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.format.colours import Palette
+from app.format.units import METRIC, Unit, Units
 from app.plots.curves import Beside, Curve, Plot, time_plot, wheel_curves
 from model.analysis.ride import suspension_travel
 from model.simulation.trajectory import Trajectory
@@ -18,9 +19,11 @@ def ride_plots(
     baseline: Trajectory | None = None,
     wheel: int | None = None,
     beside: Sequence[Beside] = (),
+    units: Units = METRIC,
 ) -> tuple[Plot, ...]:
-    """Vertical acceleration of the hull, m/s², its pitch, °, its speed, km/h, and each road wheel's travel, mm.
+    """Vertical acceleration of the hull, its pitch, °, its speed, and each road wheel's travel.
 
+    units: metric m/s², km/h and mm, or what becomes of them.
     Baseline, wheel and runs beside as in `load_plots`.
     """
     hull = [Curve("Hull", palette.hull)]
@@ -28,7 +31,7 @@ def ride_plots(
     return (
         time_plot(
             "Vertical acceleration of the hull",
-            "m/s²",
+            units.of("m/s²"),
             (-0.5, 0.5),
             hull,
             _acceleration,
@@ -37,9 +40,11 @@ def ride_plots(
             beside,
             peaks=_acceleration_peak(run),
         ),
-        time_plot("Pitch of the hull, nose up positive", "degrees", (-0.5, 0.5), hull, _pitch, run, baseline, beside),
-        time_plot("Speed", "km/h", None, hull, _speed, run, baseline, beside),
-        time_plot("Suspension travel, up positive", "mm", (-5.0, 5.0), road, _travel, run, baseline, beside),
+        time_plot(
+            "Pitch of the hull, nose up positive", Unit("degrees"), (-0.5, 0.5), hull, _pitch, run, baseline, beside
+        ),
+        time_plot("Speed", units.of("km/h"), None, hull, _speed, run, baseline, beside),
+        time_plot("Suspension travel, up positive", units.of("mm"), (-5.0, 5.0), road, _travel, run, baseline, beside),
     )
 
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from app.format.units import FINER, METRIC, Units
 from app.plots.curves import Curve, Plot
 from app.plots.thinning import thin
 from model.analysis.modes import Modes
@@ -16,7 +17,7 @@ from model.simulation.trajectory import Trajectory
 LOWEST_END = 8.0  # Hz: the axis goes this far at least …
 LOWEST = 0.1  # Hz, on a logarithmic axis
 HARMONICS = 3.0  # … and to this many times v/λ
-DECIMALS = 4  # of the values that are plotted; the page shows no more (plots.js)
+DECIMALS = 4  # of the values that are plotted, and FINER; the page shows no more (plots.js)
 LEAST_SAMPLES = 8  # of a run that has a spectrum
 
 
@@ -37,10 +38,12 @@ def spectrum_plot(
     density: bool = False,
     at_seat: bool = False,
     logarithmic: bool = False,
+    units: Units = METRIC,
 ) -> Plot:
     """Spectrum of the vertical acceleration over the window of the run, at the centre of mass or the driver's seat.
 
-    Amplitude, m/s², or power density, m²/s³. logarithmic: the axis of the frequency is, and so has no 0.
+    Amplitude, m/s², or power density, m²/s³, or what becomes of these units. logarithmic: the axis of the frequency
+    is, and so has no 0.
     """
 
     def spectrum(trajectory: Trajectory) -> tuple[np.ndarray, np.ndarray]:
@@ -62,13 +65,14 @@ def spectrum_plot(
     if logarithmic:
         shown &= frequency >= LOWEST
     frequency, values = thin(frequency[shown], np.column_stack(columns)[shown])
+    unit = units.of("m²/s³" if density else "m/s²")
     return Plot(
         f"Vertical acceleration: {'power density' if density else 'amplitude'}",
-        "m²/s³" if density else "m/s²",
+        unit.name,
         tuple(curves),
-        (0.0, 0.1),
+        (0.0, 0.1 * unit.factor),
         frequency,
-        np.round(values, DECIMALS),
+        np.round(values * unit.factor, DECIMALS + FINER.get(unit.name, 0)),
         axis="Frequency, Hz",
         logarithmic=logarithmic,
     )

@@ -1,4 +1,7 @@
-"""What the page draws of studies, as data for assets/study.js: names, units and numbers as they are shown. Pure."""
+"""What the page draws of studies, as data for assets/study.js: names, units and numbers as they are shown. Pure.
+
+`metric` beside them is the unit of the tables, and the factor that leads from it to what is shown: downloads are in it.
+"""
 
 from __future__ import annotations
 
@@ -8,12 +11,14 @@ from typing import Any
 import numpy as np
 
 from app.format.command_line import Source
-from app.format.load_unit import KILONEWTON, LoadUnit
-from app.format.parameters import shown_number
+from app.format.load_unit import figure_unit, load_unit
+from app.format.parameters import shown_number, slider_numbers
+from app.format.units import METRIC, Units
 from app.plots.thinning import thin
 from model.analysis.comfort import POWER_LIMIT
-from model.analysis.figures import FIGURE, LOAD_PEAK, POWER, SHOCK
+from model.analysis.figures import ACCELERATION_RMS, FIGURE, POWER, SHOCK
 from model.config.config import Config
+from model.dynamics.vehicle import System, build_system
 from model.study.design import Range
 from model.study.figure_map import FigureMap
 from model.study.fit import Fit, Overlay
@@ -30,29 +35,29 @@ DIGITS = 6  # of numbers that are drawn
 class FigureUnit:
     """A figure with the unit and the factor in which it is shown; loads in the vehicle's unit."""
 
-    def __init__(self, name: str, unit: LoadUnit) -> None:
+    def __init__(self, name: str, system: System, units: Units) -> None:
         of, _, self.wheel = name.partition(".")
         figure = FIGURE[of]
-        self.name, self.label, self.unit, self.factor = name, figure.label, figure.unit, 1.0
-        if figure.unit == LOAD_PEAK.unit:
-            self.unit, self.factor = unit.name, KILONEWTON.newtons / unit.newtons
-        if self.wheel:
-            self.label = f"{self.label}, {self.wheel}"
+        self.name, self.label = name, f"{figure.label}, {self.wheel}" if self.wheel else figure.label
+        told, metric = (figure_unit(figure.unit, load_unit(system, of_page), of_page) for of_page in (units, METRIC))
+        self.unit, self.factor = told.name, told.factor
+        self._metric = [metric.name, told.factor / metric.factor]
 
     @property
     def data(self) -> Data:
         bound = BOUNDS.get(self.name)
-        return {"name": self.name, "label": self.label, "unit": self.unit, "bound": bound}
+        return {"name": self.name, "label": self.label, "unit": self.unit, "metric": self._metric, "bound": bound}
 
 
 def profile_data(
-    profile: Profile, baseline: Profile | None, loads: LoadUnit, rows: Sequence[str], columns: Sequence[str]
+    profile: Profile, baseline: Profile | None, rows: Sequence[str], columns: Sequence[str], units: Units = METRIC
 ) -> Data:
     """A profile, and that of the baseline over the same ranges.
 
     rows, columns: figures and keys that the profiler shows; others are there for the strips on sliders only.
     """
-    shown = [FigureUnit(name, loads) for name in profile.figures]
+    system = build_system(profile.base)
+    shown = [FigureUnit(name, system, units) for name in profile.figures]
     told = []
     for k, figure in enumerate(shown):
         found = effects(profile, figure.name)
@@ -73,29 +78,29 @@ def profile_data(
         "done": profile.level == LEVELS[-1],
         "figures": told,
         "columns": [
-            axis_data(profile.base, curve.axis)
-            | _curve_data(profile.base, curve, factors)
+            axis_data(profile.base, curve.axis, units)
+            | _curve_data(profile.base, curve, factors, units)
             | {
                 "shown": curve.axis.key in columns,
                 "baseline": None
                 if curve.axis.key not in others
-                else _curve_data(profile.base, others[curve.axis.key], factors)
-                | {"now": _shown(baseline.base, curve.axis.key) if baseline is not None else None},
+                else _curve_data(profile.base, others[curve.axis.key], factors, units)
+                | {"now": _shown(baseline.base, curve.axis.key, units) if baseline is not None else None},
             }
             for curve in profile.curves
         ],
     }
 
 
-def map_data(of: FigureMap, loads: LoadUnit) -> Data:
+def map_data(of: FigureMap, units: Units = METRIC) -> Data:
     """A map; a list of numbers for each row."""
-    figure = FigureUnit(of.figure, loads)
-    x, y = axis_data(of.base, of.x), axis_data(of.base, of.y)
+    figure = FigureUnit(of.figure, build_system(of.base), units)
+    x, y = axis_data(of.base, of.x, units), axis_data(of.base, of.y, units)
     return {
         "done": of.done,
         "figure": figure.data,
-        "x": x | {"at": _numbers(of.columns * of.base.parameter(of.x.key).shown_factor)},
-        "y": y | {"at": _numbers(of.rows * of.base.parameter(of.y.key).shown_factor)},
+        "x": x | {"at": _numbers(of.columns * units.told(of.base.parameter(of.x.key)).shown_factor)},
+        "y": y | {"at": _numbers(of.rows * units.told(of.base.parameter(of.y.key)).shown_factor)},
         "values": [_numbers(row * figure.factor) for row in of.values],
     }
 
@@ -106,19 +111,27 @@ def map_command(of: FigureMap, source: Source) -> str:
     return source.command("sweep", *vary, "--figures", of.figure, "--out", "map.csv")
 
 
-def limits_data(own: Sequence[Limit], baseline: Sequence[Limit], part: float) -> Data:
+def limits_data(own: Sequence[Limit], baseline: Sequence[Limit], part: float, units: Units = METRIC) -> Data:
     """Fastest speeds over rough ground and half-rounds; part: of the grounds that are done, 0…1."""
     return {
         "done": part >= 1,
         "part": _number(part),
-        "fastest": SPEEDS[-1],
-        "own": {name: _limits_of(own, shock) for name, shock in (("ride", False), ("shock", True))},
-        "baseline": {name: _limits_of(baseline, shock) for name, shock in (("ride", False), ("shock", True))},
+        "fastest": _number(SPEEDS[-1] * units.of("km/h").factor),
+        "speed": _unit_data("km/h", units),
+        "size": _unit_data("mm", units),
+        "own": {name: _limits_of(own, shock, units) for name, shock in (("ride", False), ("shock", True))},
+        "baseline": {name: _limits_of(baseline, shock, units) for name, shock in (("ride", False), ("shock", True))},
     }
 
 
-def measured_data(base: Config, name: str, over: Overlay, found: Fit | None) -> Data:
+def _unit_data(metric: str, units: Units) -> Data:
+    unit = units.of(metric)
+    return {"unit": unit.name, "metric": [metric, unit.factor]}
+
+
+def measured_data(base: Config, name: str, over: Overlay, found: Fit | None, units: Units = METRIC) -> Data:
     """A run over a record, in time and as spectra, and what a fit has found."""
+    factor = units.of(ACCELERATION_RMS.unit).factor
     columns = [over.measured, over.simulated]
     spectra = [_spectrum(over.t, column) for column in columns]
     if found is not None:
@@ -127,23 +140,24 @@ def measured_data(base: Config, name: str, over: Overlay, found: Fit | None) -> 
     t, curves = thin(over.t, np.column_stack(columns))
     return {
         "name": name,
-        "rms": _number(over.rms),
+        "acceleration": _unit_data(ACCELERATION_RMS.unit, units),
+        "rms": _number(over.rms * factor),
         "lag": _number(over.lag),
-        "offset": _number(over.offset),
+        "offset": _number(over.offset * factor),
         "t": _numbers(t),
-        "curves": _table(curves),
+        "curves": _table(curves * factor),
         "spectra": [
-            {"x": _numbers(frequency[frequency <= HIGHEST]), "y": _numbers(amplitude[frequency <= HIGHEST])}
+            {"x": _numbers(frequency[frequency <= HIGHEST]), "y": _numbers(amplitude[frequency <= HIGHEST] * factor)}
             for frequency, amplitude in spectra
         ],
-        "fit": None if found is None else _fit_data(base, found),
+        "fit": None if found is None else _fit_data(base, found, units),
     }
 
 
-def _fit_data(base: Config, found: Fit) -> Data:
-    rows = []
+def _fit_data(base: Config, found: Fit, units: Units) -> Data:
+    rows, factor = [], units.of(ACCELERATION_RMS.unit).factor
     for key, estimate, at_end in zip(found.keys, found.estimates, found.at_end, strict=True):
-        parameter = base.parameter(key)
+        parameter = units.told(base.parameter(key))
         value, low, high = (
             _number(number * parameter.shown_factor) for number in (estimate.value, estimate.low, estimate.high)
         )
@@ -159,7 +173,11 @@ def _fit_data(base: Config, found: Fit) -> Data:
             }
         )
     before = found.rms_before
-    return {"rows": rows, "rms": _number(found.rms), "before": None if before is None else _number(before)}
+    return {
+        "rows": rows,
+        "rms": _number(found.rms * factor),
+        "before": None if before is None else _number(before * factor),
+    }
 
 
 def _spectrum(t: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -171,55 +189,58 @@ def _spectrum(t: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return frequency, np.sqrt(power)
 
 
-def _limits_of(found: Sequence[Limit], shock: bool) -> list[Data]:
+def _limits_of(found: Sequence[Limit], shock: bool, units: Units) -> list[Data]:
     """By size of the ground, rising: median of all seeds, slowest and fastest, and what is to be said of them."""
+    speed, size = units.of("km/h").factor, units.of("mm").factor
     by_name: dict[str, list[Limit]] = {}
     for limit in found:
         if (limit.figure == SHOCK.name) is shock:
             by_name.setdefault(limit.ground.name, []).append(limit)
     told = []
     for name, group in by_name.items():
-        speeds = [limit.drawn for limit in group if limit.drawn is not None]
+        speeds = [limit.drawn * speed for limit in group if limit.drawn is not None]
         told.append(
             {
-                "name": name,
-                "size": _number(1e3 * float(np.median([limit.ground.size for limit in group]))),
+                "name": units.reword(name),
+                "size": _number(1e3 * size * float(np.median([limit.ground.size for limit in group]))),
                 "speed": _number(float(np.median(speeds))) if speeds else None,
                 "low": _number(min(speeds)) if speeds else None,
                 "high": _number(max(speeds)) if speeds else None,
                 "never": all(limit.why == NEVER for limit in group),
                 "again": any(limit.down_again is not None for limit in group),
-                "why": "" if speeds else group[0].why,
+                "why": "" if speeds else units.reword(group[0].why),
             }
         )
     return sorted(told, key=lambda one: one["size"])
 
 
-def axis_data(config: Config, axis: Range) -> Data:
-    """A parameter: names, range, step of its slider and present value, as shown."""
-    parameter = config.parameter(axis.key)
-    value = config.value(axis.key)
-    _, _, step = parameter.slider(float(value) if isinstance(value, int | float) else 0.0)
-    low, high, step = (shown_number(parameter, number) for number in (axis.low, axis.high, step))
+def axis_data(config: Config, axis: Range, units: Units = METRIC) -> Data:
+    """A parameter: names, range, step of its slider, a number on its steps, and present value, as shown."""
+    metric = config.parameter(axis.key)
+    parameter, value = units.told(metric), config.value(axis.key)
+    first, _, step = slider_numbers(parameter, float(value) if isinstance(value, int | float) else 0.0)
+    low, high = (shown_number(parameter, number) for number in (axis.low, axis.high))
     return {
         "key": axis.key,
         "label": parameter.label,
         "unit": parameter.shown_unit,
+        "metric": [metric.shown_unit, units.of_parameter(metric).factor],
         "low": low,
         "high": high,
         "step": step,
-        "now": _shown(config, axis.key),
+        "first": low if units == METRIC else first,
+        "now": _shown(config, axis.key, units),
     }
 
 
-def _shown(config: Config, key: str) -> float | None:
+def _shown(config: Config, key: str, units: Units) -> float | None:
     value = config.value(key)
-    return shown_number(config.parameter(key), value) if isinstance(value, int | float) else None
+    return shown_number(units.told(config.parameter(key)), value) if isinstance(value, int | float) else None
 
 
-def _curve_data(config: Config, curve: Curve, factors: np.ndarray) -> Data:
+def _curve_data(config: Config, curve: Curve, factors: np.ndarray, units: Units) -> Data:
     """Shown values of the parameter, and a list of shown numbers for each figure."""
-    scale = config.parameter(curve.axis.key).shown_factor
+    scale = units.told(config.parameter(curve.axis.key)).shown_factor
     band = curve.band
     return {
         "x": _numbers(curve.values * scale),

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from app.format.parameters import choice_words, shown_text
+from app.format.units import METRIC, Units
 from app.runs.request import Request, changed_keys, same
 from model.config.config import Config
 from model.config.parameters import NOTED, PARAMETER, Parameter
@@ -83,6 +84,10 @@ class Kept:
         """The name that the user gave; empty when the run is named after its changes."""
         return self.name if self.named else ""
 
+    def renamed(self, name: str, units: Units) -> Kept:
+        """With a name that the user gave; if that is empty, named after its changes in these units."""
+        return replace(self, name=name or run_name(self.request.base, self.config, units), named=bool(name))
+
 
 class Runs:
     """The runs that are kept. When there are more than RUNS, the oldest that the user has not named goes. When their
@@ -91,6 +96,7 @@ class Runs:
     def __init__(self) -> None:
         self._kept: dict[int, Kept] = {}
         self._last_number = 0
+        self._units = METRIC
 
     def __iter__(self) -> Iterator[Kept]:
         """Oldest first."""
@@ -127,18 +133,21 @@ class Runs:
 
     def _add(self, request: Request, config: Config, run: Trajectory | None, name: str, colour: str) -> Kept:
         self._last_number += 1
-        kept = Kept(
-            self._last_number, request, config, run, name or run_name(request.base, config), colour, named=bool(name)
-        )
+        told = name or run_name(request.base, config, self._units)
+        kept = Kept(self._last_number, request, config, run, told, colour, named=bool(name))
         self._kept[kept.number] = kept
         self._make_room(kept)
         return kept
 
     def rename(self, number: int, name: str) -> Kept:
         """Give a run a name; with an empty name it is named after its changes again."""
-        kept, name = self._kept[number], plain_name(name)
-        self._kept[number] = replace(kept, name=name or run_name(kept.request.base, kept.config), named=bool(name))
+        self._kept[number] = self._kept[number].renamed(plain_name(name), self._units)
         return self._kept[number]
+
+    def set_units(self, units: Units) -> None:
+        """Name runs after their changes in these units."""
+        self._units = units
+        self._kept = {number: kept.renamed(kept.given_name, units) for number, kept in self._kept.items()}
 
     def delete(self, number: int) -> None:
         self._kept.pop(number, None)
@@ -170,16 +179,16 @@ def plain_name(name: str) -> str:
     return " ".join(name.split())[:NAME_LIMIT]
 
 
-def run_name(base: Config, config: Config) -> str:
+def run_name(base: Config, config: Config, units: Units = METRIC) -> str:
     """What was changed in a preset: "Speed 15 → 22 km/h"; without changes the preset's name."""
-    changes = differences(base, config)
+    changes = differences(base, config, units)
     if not changes:
         return base.name
     more = len(changes) - NAMED_CHANGES
     return ", ".join(changes[:NAMED_CHANGES]) + (f" and {more} more" if more > 0 else "")
 
 
-def differences(before: Config, after: Config) -> list[str]:
+def differences(before: Config, after: Config, units: Units = METRIC) -> list[str]:
     """Each parameter that differs, in words: "Speed 15 → 22 km/h"; names and descriptions left out."""
     old, new = before.values(), after.values()
     changed = [
@@ -188,9 +197,9 @@ def differences(before: Config, after: Config) -> list[str]:
         if parameter.kind not in NOTED and parameter.applies_to(after.road.type) and old.get(key) != new.get(key)
     ]
     return [
-        _difference(before.parameter(key), old.get(key), after.parameter(key), new.get(key))
+        _difference(units.told(before.parameter(key)), old.get(key), units.told(after.parameter(key)), new.get(key))
         if PARAMETER[key].applies_to(before.road.type)
-        else _named(after.parameter(key), new.get(key))
+        else _named(units.told(after.parameter(key)), new.get(key))
         for key in changed
     ]
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
+from app.format.units import METRIC, Units
 from app.runs.history import RUN_COLOURS, RUNS, Kept, plain_name, run_name
 from app.runs.request import Request, first_request
 from model.config.config import Config, ConfigError
@@ -36,6 +37,7 @@ class State:
     runs: tuple[Kept, ...]  # without their trajectories, oldest first
     baseline: Kept | None
     dark: bool | None  # the look that was chosen; None: the browser's own
+    units: Units = METRIC  # that were chosen
 
 
 def state_text(
@@ -45,6 +47,7 @@ def state_text(
     runs: Iterable[Kept],
     baseline: Kept | None,
     dark: bool | None,
+    units: Units = METRIC,
 ) -> str:
     """All of it as JSON; of runs only what is needed to make them again."""
     return json.dumps(
@@ -55,6 +58,7 @@ def state_text(
             "runs": [run_values(kept) for kept in runs],
             "baseline": None if baseline is None else run_values(baseline),
             "dark": dark,
+            "units": units.chosen,
         },
         default=part_values,  # of the roads that a sum is made of
     )
@@ -77,6 +81,7 @@ def state_from(text: str) -> State:
         runs=_all_usable(run_from, state.get("runs"), RUNS),
         baseline=_usable(run_from, state.get("baseline")),
         dark=state.get("dark") if isinstance(state.get("dark"), bool) else None,
+        units=_usable(METRIC.changed, state.get("units")) or METRIC,
     )
 
 

@@ -302,6 +302,9 @@ class Session:
     def set_dark(self, dark: bool) -> None:
         self.post("dark", lambda: self._workspace.set_dark(dark))
 
+    def choose_units(self, chosen: Mapping[str, str]) -> None:
+        self.post(f"units {' '.join(chosen)}", lambda: self._workspace.choose_units(chosen))
+
     def set_page_size(self, width: int, height: int, view: int) -> None:
         self.post("size", lambda: self._window.set_page_size(width, height, view))
 
@@ -562,6 +565,7 @@ class Session:
                 baseline=None if baseline is None else baseline.config,
                 front=self._window.study_in_front,
                 record=self._record,
+                units=self._window.units,
                 hurries=driving or not self._in_view or self._runner.under_way() is not None,
             ),
         )

@@ -92,7 +92,7 @@ class Studies:
         if situation.config is None or not (situation.front or self.choice.strips):
             return None
         shown = self.choice if situation.front else replace(self.choice, view="")
-        return situation.config, situation.baseline, situation.front, situation.record, shown
+        return situation.config, situation.baseline, situation.front, situation.record, situation.units, shown
 
     # ── On the thread of the job ──
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from app.format.command_line import Source
-from app.format.load_unit import load_unit
+from app.format.units import METRIC, Units
 from app.plots.study_data import (
     Data,
     limits_data,
@@ -35,7 +35,6 @@ from app.runs.study_choice import (
 )
 from model.config.config import Config
 from model.config.parameters import Value
-from model.dynamics.vehicle import build_system
 from model.study.design import DesignError
 from model.study.figure_map import figure_maps
 from model.study.fit import SPREAD, Fit, Signal, fit, laid_over
@@ -79,6 +78,7 @@ class Situation:
     front: bool  # the tab "Study" is seen
     hurries: bool  # a drive, a page in the background, or a run under way
     record: Record | None = None  # that was uploaded
+    units: Units = METRIC  # in which all is told
 
 
 class StudyWork:
@@ -98,18 +98,24 @@ class StudyWork:
         """What is to be shown, one after the other."""
         assert situation.config is not None
         base, baseline, view = situation.config, situation.baseline, choice.view if situation.front else ""
-        evaluate = means.evaluate
+        evaluate, units = means.evaluate, situation.units
         if view == PROFILER or choice.strips:
-            yield from self._profile(base, baseline, choice, view == PROFILER, evaluate)
+            yield from self._profile(base, baseline, choice, view == PROFILER, evaluate, units)
         if view == MAP:
-            yield from self._map(base, choice, evaluate)
+            yield from self._map(base, choice, evaluate, units)
         if view == LIMITS:
-            yield from self._limits(base, baseline, evaluate)
+            yield from self._limits(base, baseline, evaluate, units)
         if view == MEASURED and situation.record is not None:
-            yield from self._measured(base, situation.record, choice, means)
+            yield from self._measured(base, situation.record, choice, means, units)
 
     def _profile(
-        self, base: Config, baseline: Config | None, choice: StudyChoice, whole: bool, evaluate: Evaluate
+        self,
+        base: Config,
+        baseline: Config | None,
+        choice: StudyChoice,
+        whole: bool,
+        evaluate: Evaluate,
+        units: Units,
     ) -> Work:
         """The profile, and that of the baseline; whole: finer than the strips on the sliders need it."""
         columns, rows = keys_of(choice.columns, base), figures_of(choice.rows, base)
@@ -117,10 +123,10 @@ class StudyWork:
         axes = [axis for key in dict.fromkeys((*columns, *strips)) if (axis := axis_of(base, key)) is not None]
         figures = figures_of((*choice.rows, choice.figure), base)
         (chosen,) = figures_of([choice.figure], base)
-        source, loads = Source(base, self._presets), load_unit(build_system(base))
+        source = Source(base, self._presets)
 
         def told(profile: Profile, other: Profile | None) -> tuple[str, Data]:
-            data = profile_data(profile, other, loads, rows, columns)
+            data = profile_data(profile, other, rows, columns, units)
             commands = profile_commands(profile, source, rows, columns)
             return PROFILER, data | {"commands": commands, "note": source.note, "figure": chosen}
 
@@ -136,7 +142,7 @@ class StudyWork:
         for other in profiles(baseline, axes, figures, evaluate, self._found):
             yield told(latest, other)
 
-    def _map(self, base: Config, choice: StudyChoice, evaluate: Evaluate) -> Work:
+    def _map(self, base: Config, choice: StudyChoice, evaluate: Evaluate, units: Units) -> Work:
         """The map; the one that was shown last is kept while only its own two parameters change."""
         keys = keys_of((choice.x, choice.y, *COLUMNS), base)[:2]
         (figure,) = figures_of([choice.of], base)
@@ -146,11 +152,11 @@ class StudyWork:
         about = (base.replace({x.key: x.low, y.key: y.low}), x, y, figure)
         if about != self._mapped:
             self._mapped, self._map_known = about, {}
-        source, loads = Source(base, self._presets), load_unit(build_system(base))
+        source = Source(base, self._presets)
         for of in figure_maps(base, x, y, figure, evaluate, self._map_known):
-            yield MAP, map_data(of, loads) | {"commands": [map_command(of, source)], "note": source.note}
+            yield MAP, map_data(of, units) | {"commands": [map_command(of, source)], "note": source.note}
 
-    def _limits(self, base: Config, baseline: Config | None, evaluate: Evaluate) -> Work:
+    def _limits(self, base: Config, baseline: Config | None, evaluate: Evaluate, units: Units) -> Work:
         """The limits of the vehicle ground by ground, then those of the baseline, then those on more random roads."""
         own, source = self._speeds(base), Source(base, self._presets)
         other = self._speeds(baseline) if baseline is not None else {}
@@ -170,7 +176,8 @@ class StudyWork:
                     continue
                 if name not in known:
                     (known[name],) = limits([(config, [ground])], evaluate)
-                data = limits_data(list(own.values()), list(other.values()) if compared else [], done / total)
+                others = list(other.values()) if compared else []
+                data = limits_data(list(own.values()), others, done / total, units)
                 yield LIMITS, data | {"commands": [command], "note": source.note}
 
     def _speeds(self, config: Config) -> dict[tuple[str, str, int], Limit]:
@@ -182,7 +189,7 @@ class StudyWork:
             self._limited.popitem(last=False)
         return found
 
-    def _measured(self, base: Config, record: Record, choice: StudyChoice, means: Means) -> Work:
+    def _measured(self, base: Config, record: Record, choice: StudyChoice, means: Means, units: Units) -> Work:
         """The run over the record, and the last fit as long as it is about them."""
         keys = variable_keys(base)
         labels = [[key, base.parameter(key).label] for key in keys]
@@ -196,7 +203,7 @@ class StudyWork:
 
         def told(busy: str = "", said: str = "") -> Data:
             found = self._fit[1] if self._fit is not None and self._fit[0] == about else None
-            return measured_data(base, record.name, over, found) | {"busy": busy, "said": said, "keys": labels}
+            return measured_data(base, record.name, over, found, units) | {"busy": busy, "said": said, "keys": labels}
 
         asked = choice.fit != self._fits and bool(ranges)
         yield MEASURED, told("Fitting…" if asked else "")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
+from app.format.units import Units
 from model.analysis.wheel_contact import WheelState
 from model.road.road import Road
 from model.simulation.trajectory import Trajectory
@@ -50,3 +51,5 @@ class VehicleView(Protocol):
     def show_surroundings(self, on: bool) -> None: ...
 
     def set_dark(self, dark: bool) -> None: ...
+
+    def set_units(self, units: Units) -> None: ...

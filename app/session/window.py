@@ -14,6 +14,7 @@ from app.format.colours import wheel_palette
 from app.format.load_unit import load_unit
 from app.format.markup import element
 from app.format.parameters import choice_words, refusal
+from app.format.units import METRIC, Units
 from app.panels.actions import Actions
 from app.panels.address_bar import AddressBar
 from app.panels.configuration_windows import YamlWindow, show_faults
@@ -42,6 +43,7 @@ from app.panels.runs_panel import RunsPanel
 from app.panels.shortcuts import add_shortcuts
 from app.panels.status_line import BUSY_DELAY, drive_facts, progress_line, run_line, status_line
 from app.panels.study_panel import StudyPanel
+from app.panels.units_panel import UnitsPanel
 from app.panels.view_panel import ViewPanel
 from app.panels.wheel_card import WheelCard
 from app.plots.curves import Beside
@@ -86,6 +88,7 @@ class Window:
     ) -> None:
         self._client, self._actions, self._presets = client, actions, presets
         self._dark = False  # until the browser tells its setting
+        self._units = METRIC  # until it tells others
         self._run: Trajectory | None = None
         self._baseline: Trajectory | None = None
         self._beside: tuple[Beside, ...] = ()
@@ -136,6 +139,8 @@ class Window:
         with self._client.atomic():
             self._controls.fill()
             self._view_panel = ViewPanel(gui, view, self._dark, actions)
+            with view:
+                self._units_panel = UnitsPanel(gui, self._units, actions)
             self.files = FilesPanel(gui, out, into, actions)
             add_shortcuts(gui, actions)
             add_palette(gui, self._presets, actions)
@@ -294,7 +299,8 @@ class Window:
 
     def refuse(self, refused: Refused, instead: Config) -> None:
         """Say what is wrong with a request, and let the controls show a valid configuration instead."""
-        body = " ".join(refusal(fault, refused.request.changes.get(fault.path), instead) for fault in refused.faults)
+        given = refused.request.changes
+        body = " ".join(refusal(fault, given.get(fault.path), instead, self._units) for fault in refused.faults)
         self._notifications.show("refused", "Not possible", body, "red")
         self._controls.show(instead)
 
@@ -353,7 +359,7 @@ class Window:
     def show_time(self, playback: Playback, driving: bool) -> None:
         """Player and time cursors."""
         if driving:
-            self._playback.show_drive(playback, self._drive)
+            self._playback.show_drive(playback, self._drive, self._units)
         else:
             self._playback.show(playback)
         if self._drive is None or self._drive.stands:
@@ -364,7 +370,7 @@ class Window:
         self._show_wheel()
         self._show_road(playback.time)
         if self._filled and self._run is not None:
-            self._view_panel.show_load_scale(self.view.load_top, load_unit(self._run.system))
+            self._view_panel.show_load_scale(self.view.load_top, load_unit(self._run.system, self._units))
 
     def _show_road(self, time: float) -> None:
         """The side view of the road about the vehicle at a time of the run or drive, s.
@@ -376,9 +382,9 @@ class Window:
             return
         self._road_due = now + ROAD_EVERY
         if self._drive is not None:
-            view = self._road_ahead.of_drive(self._drive.recent, self._drive.road, time)
+            view = self._road_ahead.of_drive(self._drive.recent, self._drive.road, time, self._units)
         elif self._run is not None and len(self._run.t):
-            view = self._road_ahead.of_run(self._run, time)
+            view = self._road_ahead.of_run(self._run, time, self._units)
         else:
             return
         if self._controls.road_view.content != view:
@@ -491,7 +497,7 @@ class Window:
         state = self.view.wheel_state(wheel) if wheel is not None else None
         if wheel is not None and state is not None and self._run is not None:
             palette = wheel_palette(self._run.system.n, self._run.system.m, self._dark)
-            self._card.show(state, palette.wheels[wheel], load_unit(self._run.system))
+            self._card.show(state, palette.wheels[wheel], load_unit(self._run.system, self._units), self._units)
         elif wheel is not None:
             self.pick_wheel(None)
 
@@ -512,6 +518,22 @@ class Window:
     def show_surroundings(self, on: bool) -> None:
         """Sky and ground."""
         self.view.show_surroundings(on)
+
+    def set_units(self, units: Units) -> None:
+        """Tell all quantities in these units."""
+        self._units = units
+        with self._client.atomic():
+            self._controls.set_units(units)
+            if self._filled:
+                self._units_panel.show(units)
+            self._plots.set_units(units)
+            self.study.set_units(units)
+            self.view.set_units(units)
+            self._show_wheel()
+
+    @property
+    def units(self) -> Units:
+        return self._units
 
     @property
     def dark(self) -> bool:

@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import Any
 
 from app.format.link import Link
+from app.format.units import METRIC, Units
 from app.plots.curves import Beside
 from app.runs.history import REST, RUN_COLOURS, Changes, Kept, Runs, run_name
 from app.runs.project import Project
@@ -53,6 +54,7 @@ class Workspace:
         self._stored = ""
         self._dark: bool | None = None  # the look that the user has chosen
         self._prefers_dark = False
+        self._units = METRIC
         self._link: Link | None = None  # to be opened once the browser has told what it has stored
         self._restored = False  # the browser has told what it has stored; from then on we may overwrite it
 
@@ -106,6 +108,24 @@ class Workspace:
         self._look()
         self._news_at = 0.0
 
+    def choose_units(self, chosen: Mapping[str, str]) -> None:
+        """Tell some quantities of the page in other units."""
+        self._set_units(self._units.changed(chosen))
+
+    def _set_units(self, units: Units) -> None:
+        if units == self._units:
+            return
+        self._units = units
+        self._runs.set_units(units)
+        self._kept, self._baseline = (
+            None if kept is None else kept.renamed(kept.given_name, units) for kept in (self._kept, self._baseline)
+        )
+        self._window.set_units(units)
+        self._compared, self._compared_at, self._named = False, 0.0, False
+        if self._ticked:
+            self._show_beside()
+        self._note_news()
+
     def prefer_dark(self, dark: bool) -> None:
         """Take the look that the browser is set to, until the user chooses one."""
         self._prefers_dark = dark
@@ -140,7 +160,9 @@ class Workspace:
             return None
         self._news_at = None
         own = [self._presets[name] for name in self._own]
-        state = state_text(self._started_with, self._changes.present, own, self._runs, self._baseline, self._dark)
+        state = state_text(
+            self._started_with, self._changes.present, own, self._runs, self._baseline, self._dark, self._units
+        )
         if state == self._stored:
             return None
         self._stored = state
@@ -274,7 +296,7 @@ class Workspace:
         return self._kept
 
     def _set_baseline(self, run: Kept | None) -> None:
-        self._baseline = run
+        self._baseline = None if run is None else run.renamed(run.given_name, self._units)
         self._window.show_baseline(self.baseline)
         self._compared, self._compared_at = False, 0.0
         self._note_news()
@@ -289,7 +311,9 @@ class Workspace:
         """The name of the run that is shown."""
         if self._kept is not None:
             return self._kept.name
-        return "" if self._good is None else run_name(self._good.request.base, self._good.trajectory.config)
+        return (
+            "" if self._good is None else run_name(self._good.request.base, self._good.trajectory.config, self._units)
+        )
 
     def _show(self) -> None:
         self._window.runs.show(self._runs, self._name, self._kept, self._baseline, self._before_drive, self._ticked)
@@ -303,7 +327,7 @@ class Workspace:
             self._window.runs.show_name(self._name)
         if not self._compared:
             beside = [Beside(kept.name, kept.colour, kept.run) for kept in self._beside if kept.run is not None]
-            self._window.runs.compare(self._good.trajectory, self.baseline, beside)
+            self._window.runs.compare(self._good.trajectory, self.baseline, beside, self._units)
             self._compared, self._compared_at = True, now
 
     # ── Configurations ──
@@ -426,6 +450,8 @@ class Workspace:
         if state is not None and self._dark is None:
             self._dark = state.dark
         self._look()
+        if state is not None and self._units == METRIC:
+            self._set_units(state.units)
         if state is not None:
             self._take_stock(state)
         link, self._link = self._link, None

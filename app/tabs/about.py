@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from app.format.markup import Html, element, formula_html, page, row, table, words_html
 from app.format.parameters import value_text
+from app.format.units import METRIC, Units
 from model.config.parameters import GROUPS, NOTES, PARAMETERS, Parameter
 
 
@@ -91,10 +92,10 @@ SOURCE = (
 
 
 @cache
-def about_html() -> str:
+def about_html(units: Units = METRIC) -> str:
     """HTML of the whole tab."""
     laws = (part for law in LAWS for part in _law(law))
-    tables = (part for group in GROUPS if group != NOTES for part in _group(group))
+    tables = (part for group in GROUPS if group != NOTES for part in _group(group, units))
     return page(element("p", SOURCE), *laws, element("h3", "Parameters"), *tables)
 
 
@@ -109,8 +110,8 @@ def _law(law: Law) -> list[Html]:
     ]
 
 
-def _group(group: str) -> list[Html]:
-    rows = [_row(parameter) for parameter in PARAMETERS if parameter.group == group]
+def _group(group: str, units: Units) -> list[Html]:
+    rows = [_row(units.told(parameter)) for parameter in PARAMETERS if parameter.group == group]
     return [element("h4", group), table(("Name", "Symbol", "Default", "From"), rows, "trackride-parameters")]
 
 

@@ -6,7 +6,9 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from app.format.differences import NONE, figure_text
+from app.format.load_unit import KILONEWTON, told_row
 from app.format.markup import Content, Html, cell, element, page, table, words_html
+from app.format.units import METRIC, Units
 from app.tabs.comparison import cells
 from model.analysis.comfort import MOST_CREST, POWER_LIMIT, Comfort, ride_comfort
 from model.analysis.figures import DOSE, POWER, SHOCK, TRANSIENT, WEIGHTED, Row, percent
@@ -75,7 +77,7 @@ SEAT = "Driver's seat"
 PLACES = ((SEAT, seat), ("Centre of mass", lambda config: CENTRE_OF_MASS))
 
 
-def comfort_headline(run: Trajectory, driving: bool = False) -> str:
+def comfort_headline(run: Trajectory, driving: bool = False, units: Units = METRIC) -> str:
     """HTML of the ride in a line. driving: the run is a stretch of an endless drive."""
     if not len(run.t):
         return ""
@@ -88,7 +90,9 @@ def comfort_headline(run: Trajectory, driving: bool = False) -> str:
         f"{figure_text(felt.absorbed_power)} W",
         class_="bad" if felt.absorbed_power > POWER_LIMIT else None,
     )
-    seat_words = "Driver's seat: ", element("b", felt.reaction), f", {figure_text(felt.total)} m/s² weighted · "
+    unit = units.of(WEIGHTED.unit)
+    weighted = f"{figure_text(felt.total * unit.factor)}{unit.after} weighted"
+    seat_words = "Driver's seat: ", element("b", felt.reaction), f", {weighted} · "
     alarms = []
     if felt.window.shortfall:
         alarms.append("still settling" if driving else "run too short")
@@ -98,7 +102,9 @@ def comfort_headline(run: Trajectory, driving: bool = False) -> str:
     return str(element("div", *seat_words, power, " absorbed", *said, class_="trackride-comfort"))
 
 
-def comfort_page(run: Trajectory, baseline: Trajectory | None = None, driving: bool = False) -> str:
+def comfort_page(
+    run: Trajectory, baseline: Trajectory | None = None, driving: bool = False, units: Units = METRIC
+) -> str:
     """HTML of all figures at both places, now and of the baseline, what they are taken from and what they mean.
 
     driving: the run is a stretch of an endless drive.
@@ -113,9 +119,10 @@ def comfort_page(run: Trajectory, baseline: Trajectory | None = None, driving: b
         if place == SEAT:
             felt_by_driver = felt
         if felt is not None:
-            tables.append(_table(place, felt, None if other is None else ride_comfort(other, point(other.config))))
+            before = None if other is None else ride_comfort(other, point(other.config))
+            tables.append(_table(place, felt, before, units))
     found = figure_warnings(run.config, taken, felt_by_driver, driving)
-    cautions = (element("p", str(each), class_="bad") for each in found)
+    cautions = (element("p", units.reword(str(each)), class_="bad") for each in found)
     words = (
         f"Taken {taken.why}; vertical and horizontal, not turned with the hull. The words are those of ISO 2631-1; "
         "where two apply, the harsher one."
@@ -126,11 +133,11 @@ def comfort_page(run: Trajectory, baseline: Trajectory | None = None, driving: b
     return page(element("h4", "Ride comfort"), *cautions, *tables, element("p", words), element("ul", *meanings))
 
 
-def _table(place: str, now: Comfort, baseline: Comfort | None) -> Html:
+def _table(place: str, now: Comfort, baseline: Comfort | None, units: Units) -> Html:
     compared = baseline is not None
     lines: list[list[Content]] = []
     for figure in COMFORT_FIGURES:
-        row = _row(figure, now, baseline)
+        row = told_row(_row(figure, now, baseline), KILONEWTON, units)
         lines.append([f"{row.figure}, {row.unit}" if row.unit else row.figure, *cells(row, compared)])
     words = [now.reaction] if baseline is None else [now.reaction, baseline.reaction, ""]
     lines.append(["In words", *(cell(word, class_="words") for word in words)])

@@ -11,6 +11,7 @@ from PIL import Image
 from app.format.load_colours import RAMP, load_colours
 from app.format.load_unit import load_unit
 from app.format.markup import Html, element, page
+from app.format.units import METRIC, Units
 from app.plots.curves import at_times
 from app.plots.ticks import TICKS, ticks
 from model.simulation.trajectory import Trajectory, wheel_names
@@ -23,7 +24,7 @@ READING = (
 )
 
 
-def load_map(run: Trajectory, baseline: Trajectory | None = None) -> str:
+def load_map(run: Trajectory, baseline: Trajectory | None = None, units: Units = METRIC) -> str:
     """HTML of the normal loads of road wheels and of imaginary wheels over time, front wheel on top.
 
     Where a wheel is in the air the map is empty. A picture's column shows the largest load in its stretch of time. A
@@ -32,7 +33,7 @@ def load_map(run: Trajectory, baseline: Trajectory | None = None) -> str:
     if not len(run.t):
         return page(element("p", "This run has no samples."))
     runs = [("", run)] + ([(", baseline", baseline)] if baseline is not None and len(baseline.t) else [])
-    maps, unit = [], load_unit(run.system)
+    maps, unit = [], load_unit(run.system, units)
     for family, letter in (("road", "R"), ("imaginary", "I")):
         shown = []
         for whose, of in runs:

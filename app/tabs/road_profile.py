@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.format.markup import element
+from app.format.units import METRIC, Units
 from app.plots.ticks import ticks
 from model.config.config import Config
 from model.road.road import Road
@@ -28,31 +29,31 @@ class RoadAhead:
         self._run: Trajectory | None = None
         self._span = (0.0, 0.0)
 
-    def of_run(self, run: Trajectory, time: float) -> str:
+    def of_run(self, run: Trajectory, time: float, units: Units = METRIC) -> str:
         """HTML of the view at a time of a run with samples, s."""
         if self._road is None or self._config is None or not _same_road(self._config, run.config):
             self._config, self._road, self._run = run.config, run.road, None
         if self._run is not run:
             x = run.q[:, run.system.chassis, 0]
             self._run, self._span = run, span_of(self._road, float(x.min()), float(x.max()))
-        return _at(run, self._road, self._span, time)
+        return _at(run, self._road, self._span, time, units)
 
-    def of_drive(self, recent: Trajectory, road: Road, time: float) -> str:
+    def of_drive(self, recent: Trajectory, road: Road, time: float, units: Units = METRIC) -> str:
         """HTML of the view at a time of a drive, s, on the road that is laid."""
         if self._road is None or self._road.profile is not road.profile:
             x = float(recent.q[-1, recent.system.chassis, 0])
             self._config, self._run, self._span = None, None, span_of(road, x, x)
         self._road = road
-        return _at(recent, road, self._span, time)
+        return _at(recent, road, self._span, time, units)
 
 
 def _same_road(one: Config, other: Config) -> bool:
     return one.road == other.road and one.vehicle.road_wheels == other.vehicle.road_wheels
 
 
-def _at(run: Trajectory, road: Road, span: tuple[float, float], time: float) -> str:
+def _at(run: Trajectory, road: Road, span: tuple[float, float], time: float, units: Units) -> str:
     x = run.q[min(int(np.searchsorted(run.t, time)), len(run.t) - 1), :, 0]
-    return road_view(road, span, float(x[run.system.chassis]), x[run.system.road_wheels])
+    return road_view(road, span, float(x[run.system.chassis]), x[run.system.road_wheels], units)
 
 
 def span_of(road: Road, first: float, last: float) -> tuple[float, float]:
@@ -63,7 +64,7 @@ def span_of(road: Road, first: float, last: float) -> tuple[float, float]:
     return middle - 1.1 * half, middle + 1.1 * half
 
 
-def road_view(road: Road, span: tuple[float, float], x: float, wheels: np.ndarray) -> str:
+def road_view(road: Road, span: tuple[float, float], x: float, wheels: np.ndarray, units: Units = METRIC) -> str:
     """HTML of the road's heights within the span, m, about x, m, and of wheels at these x (K,), m."""
     low, high = span
     along = x + np.linspace(-BEHIND, AHEAD, LINE)
@@ -74,10 +75,11 @@ def road_view(road: Road, span: tuple[float, float], x: float, wheels: np.ndarra
         element("circle", cx=f"{_across(wheel, x):.1f}", cy=f"{at - 3:.1f}", r="3")
         for wheel, at in zip(wheels, _up(under, span), strict=True)
     )
+    unit = units.of("m")
     distances = (
-        element("text", f"{tick:g} m", x=f"{_across(tick, x):.1f}", y=f"{HEIGHT - 3}")
-        for tick in ticks(x - BEHIND, x + AHEAD, 4)
-        if x - BEHIND + MARGIN <= tick <= x + AHEAD - MARGIN
+        element("text", f"{tick:g}{unit.after}", x=f"{_across(tick / unit.factor, x):.1f}", y=f"{HEIGHT - 3}")
+        for tick in ticks((x - BEHIND) * unit.factor, (x + AHEAD) * unit.factor, 4)
+        if x - BEHIND + MARGIN <= tick / unit.factor <= x + AHEAD - MARGIN
     )
     exaggeration = (HEIGHT - FOOT - HEADROOM) / (high - low) * (BEHIND + AHEAD) / WIDTH
     drawing = element(

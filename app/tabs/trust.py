@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from app.format.load_unit import load_unit
 from app.format.markup import Content, Html, element, joined, page, table, words_html
+from app.format.units import METRIC, Units
 from model.analysis.energy import EnergyBalance, energy_balance, load_balance
 from model.analysis.ride_warnings import RideWarning, motion_warnings, warnings
 from model.config.parameters import number_text
@@ -29,7 +30,7 @@ class Check(NamedTuple):
     good: bool | None = None  # None: there is nothing to judge
 
 
-def trust_html(run: Trajectory, driving: bool = False, road: Road | None = None) -> str:
+def trust_html(run: Trajectory, driving: bool = False, road: Road | None = None, units: Units = METRIC) -> str:
     """HTML of figures and warnings. driving: the run is a stretch of an endless drive, without balances of its own.
 
     road: under that stretch; without it nothing is said of what its wheels and the hull's floor do to it.
@@ -38,10 +39,10 @@ def trust_html(run: Trajectory, driving: bool = False, road: Road | None = None)
         return page(element("p", f"There is nothing to judge: {run.status}."))
     open_ended = driving and road is None
     found = motion_warnings(run) if open_ended else warnings(run, road)
-    checks = [] if driving else balances(run)
+    checks = [] if driving else balances(run, units)
     return page(
         element("h4", "Warnings"),
-        _warnings(found),
+        _warnings(found, units),
         element("p", LEFT_OPEN) if open_ended else "",
         element("h4", "Does the run obey its laws?"),
         _table([*checks, drift(run)]),
@@ -73,10 +74,10 @@ def _energy_check(run: Trajectory, energy: EnergyBalance) -> Check:
     return Check(name, f"{energy.closing_error:.2g} %", meaning, energy.closing_error <= CLOSING_LIMIT)
 
 
-def balances(run: Trajectory) -> list[Check]:
+def balances(run: Trajectory, units: Units = METRIC) -> list[Check]:
     """What the whole run says about energy and forces."""
     energy, force = energy_balance(run), load_balance(run)
-    system, unit = run.system, load_unit(run.system)
+    system, unit = run.system, load_unit(run.system, units)
     weight = float(system.weight.sum())
     broken = float(abs(force.residual).max()) / weight
     return [
@@ -125,10 +126,13 @@ def work(run: Trajectory) -> list[Check]:
     ]
 
 
-def _warnings(found: list[RideWarning]) -> Html:
+def _warnings(found: list[RideWarning], units: Units) -> Html:
     if not found:
         return element("p", "None: this is within what the model was made for.", class_="good")
-    items = (element("li", element("b", warning.what), element("br"), warning.meaning) for warning in found)
+    items = (
+        element("li", element("b", units.reword(warning.what)), element("br"), units.reword(warning.meaning))
+        for warning in found
+    )
     return element("ul", *items, class_="bad")
 
 

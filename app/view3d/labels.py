@@ -92,4 +92,4 @@ class WheelLabels:
 
 def load_text(load: float, unit: LoadUnit) -> str:
     """A load, N, without its unit, as wide as the largest: " 8.9"."""
-    return f"{load / unit.newtons:.1f}".rjust(4, FIGURE_SPACE)
+    return f"{load / unit.newtons:.{min(unit.decimals, 1)}f}".rjust(4, FIGURE_SPACE)

@@ -15,6 +15,7 @@ import viser
 
 from app.format.colours import Palette, Theme
 from app.format.load_colours import load_colours
+from app.format.units import METRIC, Unit, Units
 from app.view3d.labels import BELOW
 from app.view3d.meshes.measures import Measures
 from app.view3d.meshes.solids import lathe, light
@@ -26,6 +27,8 @@ TICK = 0.10  # m, half the length of a static load's tick, at the size of the pa
 FLANGE = 0.05  # m, half the length of a travel bar's end marks
 BESIDE = 0.13  # m from a wheel's centre back to its travel bar
 LINE = 0.022  # m, thickness of lines
+METRE = METRIC.of("m")
+BARS, BARS_IN_FEET = (1.0, 0.5, 0.2, 0.1, 0.05), (3.0, 2.0, 1.0, 0.5, 0.2)  # lengths of a scale bar
 PICKED_RING = 1.12  # outer radius of the ring around the wheel that is picked, times the wheel's
 RING = 0.80  # inner radius of a wheel's ring, times its outer
 TRACTION_SCALE = 5.0  # times as long per newton as the loads' arrows: tractions are so much smaller
@@ -215,17 +218,19 @@ class ScaleBar:
     """A bar of a round length, with its length below it."""
 
     def __init__(self, api: viser.SceneApi, scene: Scene, now: Snapshot) -> None:
-        measures, s = scene.measures, scene.measures.scale
+        self._measures = scene.measures
         self._frame = Frame(api, f"{OVERLAYS}/scale_bar")
-        bar = scale_bar(measures)
-        self._bar = _lines(api, "scale_bar/line", bar, s)
-        middle = bar[0].mean(axis=0)
-        api.add_label(
-            f"{OVERLAYS}/scale_bar/name",
-            f"{bar_length(measures):g} m",
-            position=(float(middle[0]), float(middle[1]), float(middle[2]) - 0.04 * s),
-            anchor="top-center",
-        )
+        self._bar = _lines(api, "scale_bar/line", scale_bar(scene.measures, METRE), scene.measures.scale)
+        self._name = api.add_label(f"{OVERLAYS}/scale_bar/name", "", anchor="top-center")
+        self.tell_in(METRE)
+
+    def tell_in(self, unit: Unit) -> None:
+        """Be a round number of this unit of length long."""
+        bar = scale_bar(self._measures, unit)
+        x, y, z = bar[0].mean(axis=0).tolist()
+        self._bar.points = bar
+        self._name.text = f"{bar_length(self._measures, unit):g}{unit.after}"
+        self._name.position = (x, y, z - 0.04 * self._measures.scale)
 
     def show(self, on: Mapping[str, bool]) -> None:
         self._frame.node.visible = on["scale_bar"]
@@ -264,6 +269,12 @@ class Overlays:
         """Bring what is shown to where it is now."""
         for overlay in self._all:
             overlay.draw(scene, now)
+
+    def tell_in(self, units: Units) -> None:
+        """Tell lengths in these units."""
+        for overlay in self._all:
+            if isinstance(overlay, ScaleBar):
+                overlay.tell_in(units.of("m"))
 
     def remove(self) -> None:
         self._node.remove()
@@ -330,17 +341,18 @@ def travel_bars(scene: Scene, now: Snapshot) -> np.ndarray:
     return _aside(from_, to, scene.measures.arrow + 0.05 * s)
 
 
-def bar_length(measures: Measures) -> float:
-    """m: as much as goes three times between the first wheel and the last."""
-    room = (measures.front - measures.rear) / 3
-    return next((length for length in (1.0, 0.5, 0.2, 0.1) if length <= room), 0.05)
+def bar_length(measures: Measures, unit: Unit) -> float:
+    """In the unit, m or what m is told in: as much as goes three times between the first wheel and the last."""
+    room = (measures.front - measures.rear) / 3 * unit.factor
+    *longer, shortest = BARS if unit == METRE else BARS_IN_FEET
+    return next((length for length in longer if length <= room), shortest)
 
 
-def scale_bar(measures: Measures) -> np.ndarray:
+def scale_bar(measures: Measures, unit: Unit) -> np.ndarray:
     """(3, 2, 3) a bar of round length with its ends, under the rear of the vehicle."""
     s = measures.scale
     a = np.array([measures.idler.x - 0.6 * s, -measures.road_half_width - 0.02 * s, -0.1 * s])
-    b, up = a + np.array([bar_length(measures), 0.0, 0.0]), np.array([0.0, 0.0, 0.06 * s])
+    b, up = a + np.array([bar_length(measures, unit) / unit.factor, 0.0, 0.0]), np.array([0.0, 0.0, 0.06 * s])
     return np.array([[a, b], [a - up, a + up], [b - up, b + up]], dtype=np.float32)
 
 

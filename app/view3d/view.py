@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from app.format.colours import DARK, LIGHT, Theme, wheel_palette
 from app.format.load_unit import load_unit
+from app.format.units import METRIC, Units
 from app.view3d.camera import Camera, Standpoint, Tab, about_as_long
 from app.view3d.ghost import GHOST, Ghost
 from app.view3d.labels import WheelLabels
@@ -37,7 +38,7 @@ class View3D:
 
     def __init__(self, client: Tab, dark: bool = False) -> None:
         self._client = client
-        self._dark = dark
+        self._dark, self._units = dark, METRIC
         self._on = {name: switch.on for name, switch in SWITCHES.items()}
         self._arrow_scale = 1.0
         self._camera = Camera(client)
@@ -148,6 +149,13 @@ class View3D:
                 ghost.colour(self._theme)
             self._colour_nodes()
 
+    def set_units(self, units: Units) -> None:
+        """Tell loads and lengths in these units."""
+        self._units = units
+        if self._nodes is not None:
+            self._nodes.overlays.tell_in(units)
+            self.write_names()
+
     def on_pick(self, act: Callable[[int], None]) -> None:
         """Call act(wheel), which must not block, on the event loop when the user clicks a wheel (model's order)."""
         self._picked = act
@@ -207,7 +215,7 @@ class View3D:
         labels = self._nodes.labels
         labels.thin_out(lambda metres: self._camera.spacing(metres, self._height))
         if self._on["loads"]:
-            labels.write(self._scene.loads(self._time), load_unit(self._scene.system))
+            labels.write(self._scene.loads(self._time), load_unit(self._scene.system, self._units))
 
     def wheel_state(self, wheel: int) -> WheelState | None:
         """A wheel, in the model's order, at the time drawn last; None where there is no such wheel."""
@@ -292,5 +300,6 @@ class View3D:
         self._nodes.vehicle.on_click(lambda wheel: self._picked(wheel))
         self._nodes.labels.set_type(self._type)
         self._nodes.overlays.pick(self._marked)
+        self._nodes.overlays.tell_in(self._units)
         self._colour_nodes()
         self._show_what_is_on()

@@ -16,6 +16,7 @@ import zstandard
 from websockets.exceptions import ConnectionClosedOK
 from websockets.sync.client import connect
 
+from app.format.units import Units
 from app.server import Explorer
 from model.analysis.wheel_contact import WheelState, wheel_state
 from model.config.config import Config
@@ -159,6 +160,9 @@ class FakeView:
 
     def set_dark(self, dark: bool) -> None:
         self.dark = dark
+
+    def set_units(self, units: Units) -> None:
+        self.units = units
 
 
 class Tab:

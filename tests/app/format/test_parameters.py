@@ -84,6 +84,7 @@ def test_a_refusal_has_the_unit_of_the_basis() -> None:
         ),
         ({"drive.speed_kmh": (1.0, 5.0)}, "Speed: one number is needed, with a point: 1.5, not 1,5. Give 0.5 to 100"),
         ({STIFFNESS: (0.0, 5e3)}, "Suspension stiffness: 0, 5 kN/m is not allowed. Give 0.01 to 100000 kN/m, for each"),
+        ({STIFFNESS: (float("inf"), 5e3)}, "Suspension stiffness: "),
         ({"vehicle.road_wheels.count": 2.5}, "Road wheels: 2.5 is not allowed; give a whole number from 2 to 20."),
     ],
 )

@@ -9,6 +9,7 @@ from unittest.mock import create_autospec
 import pytest
 import viser
 
+from app.format.units import METRIC, US
 from app.panels.actions import Actions
 from app.panels.parameter_panel import ParameterPanel
 from model.config.config import Config
@@ -131,6 +132,40 @@ def test_rates_of_the_torsion_bar_are_shown_in_its_units(server: viser.ViserServ
     controls.show(PAPER)
     assert as_typed(controls[STIFFNESS]._one.label) == "Suspension stiffness, kN/m"
     assert as_typed(controls[damping]._one.label) == "Suspension damping, kN s/m"
+
+
+def test_controls_show_other_units_and_mean_the_same(server: viser.ViserServer) -> None:
+    config = PAPER.replace({STIFFNESS: (60e3,) * 5 + (75530.0,), "vehicle.road_suspension.bump_travel": 0.123})
+    controls = panel(server, config)
+    usual = {key: controls[key].box for key in config.values() if key in PARAMETER and PARAMETER[key].what_if}
+    controls.set_units(US)
+    for parameter in PARAMETERS:
+        if parameter.group != NOTES and parameter.applies_to("sine") and not parameter.per_wheel:
+            assert controls[parameter.key].value == config.value(parameter.key), parameter.key
+    assert controls[STIFFNESS].listed_value == config.value(STIFFNESS)
+    assert controls[STIFFNESS]._list.value == "342.6, 342.6, 342.6, 342.6, 342.6, 431.3"
+    speed = controls["drive.speed_kmh"]._one
+    assert as_typed(speed.label) == "Speed, mph"
+    assert (speed.value, speed.min, speed.max, speed.step) == (9.321, 1.4, 43.4, 0.2)
+    assert controls["vehicle.road_suspension.bump_travel"]._one.value == "4.843"
+    assert controls["vehicle.chassis.cg_height"]._one.step == 0.2
+    speed.value = 20.0
+    assert controls["drive.speed_kmh"].value == 32.18688
+    controls.set_units(METRIC)  # what the user has moved stays, though no run has come of it yet
+    assert (speed.value, speed.min, speed.max, speed.step) == (32.18688, 2, 70, 0.5)
+    controls.show(config)
+    assert (speed.value, controls[STIFFNESS]._list.value) == (15, "60, 60, 60, 60, 60, 75.53")
+    assert {key: controls[key].box for key in usual} == usual
+
+
+def test_rates_of_the_torsion_bar_have_units_of_choice_too(server: viser.ViserServer) -> None:
+    controls = panel(server)
+    controls.set_units(US)
+    config = PAPER.replace({"vehicle.road_suspension.basis": "torsion"})
+    controls.show(config, touched={STIFFNESS})
+    assert as_typed(controls[STIFFNESS]._one.label) == "Suspension stiffness, lbf in/rad"
+    assert controls[STIFFNESS].value == config.value(STIFFNESS) == 75530
+    assert controls[STIFFNESS]._one.value == pytest.approx(75530 * 8.850746, rel=1e-3)
 
 
 def test_presets_with_the_same_title_can_be_told_apart(server: viser.ViserServer) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.format.units import US
 from app.panels.road_parts import parts_from, parts_text, with_part, without_last
 from app.runs.history import run_name
 from app.runs.request import Request
@@ -72,6 +73,17 @@ def test_parts_as_text_and_back() -> None:
     road = config.replace({"road.parts": parts_from(shorter, ())}).road
     assert [part.type for part in road.parts] == ["random", "half_round"]  # type: ignore[union-attr]
     assert road.parts[1].height == 0.055  # type: ignore[union-attr]
+
+
+def test_parts_in_other_units_keep_what_is_left_alone() -> None:
+    config = load_config("obstacles")
+    parts = config.road.parts  # type: ignore[union-attr]
+    text = parts_text(parts, US)
+    assert text.splitlines()[1] == "half round: position 32.81 ft, height 3.937 in, radius 0.6562 ft"
+    assert config.replace({"road.parts": parts_from(text, parts, US)}).road == config.road
+    higher = config.replace({"road.parts": parts_from(text.replace("height 3.937 in", "height 5"), parts, US)}).road
+    assert higher.parts[1] == parts[1].model_copy(update={"height": 0.127})  # type: ignore[union-attr]
+    assert higher.parts[2:] == parts[2:]  # type: ignore[union-attr]
 
 
 def test_a_profile_among_the_parts_stays_what_it_is() -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from app.format.colours import wheel_palette
+from app.format.units import US
 from app.plots.curves import Beside, Plot, load_plots
 from app.plots.ride import ride_plots
 from app.plots.thinning import BUCKETS, thin
@@ -233,3 +234,17 @@ def test_a_run_beside_without_the_singled_wheel_has_no_curve_there():
     four = make_run(run.config.replace({"vehicle.road_wheels.count": 4}))
     road, *_ = load_plots(run, PALETTE, wheel=5, beside=[Beside("Four", "#112233", four)])
     assert "beside" not in [curve.kind for curve in road.curves]
+
+
+def test_all_plots_in_other_units_show_the_same_motion() -> None:
+    run, baseline = make_run(), make_run(PAPER.replace({"drive.speed_kmh": 20}))
+    told = load_plots(run, PALETTE, baseline, units=US) + ride_plots(run, PALETTE, baseline, units=US)
+    assert [plot.unit for plot in told] == ["lbf", "lbf", "%", "g", "degrees", "mph", "in"]
+    factors = 224.80894, 224.80894, 1.0, 1 / 9.80665, 1.0, 0.62137119, 1 / 25.4
+    for plot, usual, factor in zip(told, all_plots(run, baseline), factors, strict=True):
+        np.testing.assert_allclose(plot.values, usual.values * factor, atol=0.006 * max(factor, 1))
+        assert [peak.value for peak in plot.peaks] == pytest.approx(
+            [peak.value * factor for peak in usual.peaks], abs=0.006 * max(factor, 1)
+        )
+        assert plot.least == (None if usual.least is None else pytest.approx(np.multiply(usual.least, factor)))
+    assert np.ptp(told[3].values[:, 0]) == pytest.approx(np.ptp(run.a[:, 0, 1]) / 9.80665, abs=0.002)  # a decimal more

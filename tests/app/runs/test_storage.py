@@ -99,4 +99,4 @@ def test_no_value_put_anywhere_does_harm(data: st.DataObject) -> None:
     found = state_from(json.dumps(state))
     assert all(kept.colour in RUN_COLOURS and kept.request.config() == kept.config for kept in found.runs)
     if found.request is not None:
-        state_text(PAPER, found.request, found.presets, found.runs, found.baseline, found.dark)
+        state_text(PAPER, found.request, found.presets, found.runs, found.baseline, found.dark, found.units)

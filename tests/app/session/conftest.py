@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from app.files.uploads import ProfileQuestion
+from app.format.units import METRIC, Units
 from app.panels.export_list import ExportLine
 from app.plots.curves import Beside
 from app.runs.history import Kept, Runs
@@ -52,7 +53,10 @@ class FakeRunsPanel:
     def show_name(self, name: str) -> None:
         self.name = name
 
-    def compare(self, now: Trajectory, baseline: Trajectory | None, beside: Sequence[Beside] = ()) -> None:
+    def compare(
+        self, now: Trajectory, baseline: Trajectory | None, beside: Sequence[Beside] = (), units: Units = METRIC
+    ) -> None:
+        self.units = units
         self.compared_beside = [other.name for other in beside]
         self.compared.append((now, baseline))
 
@@ -73,6 +77,7 @@ class FakeWindow:
         self.runs = FakeRunsPanel()
         self.runs_in_front = False
         self.dark = False
+        self.units = METRIC
         self.said: list[tuple[str, str]] = []  # title and body
         self.faults: list[tuple[str, ConfigError]] = []
         self.profiles: list[ProfileQuestion] = []  # how a profile is to be read
@@ -128,6 +133,9 @@ class FakeWindow:
 
     def release_view(self) -> None:
         self.held = None
+
+    def set_units(self, units: Units) -> None:
+        self.units = units
 
     def store(self, state: str) -> None:
         self.stored.append(state)

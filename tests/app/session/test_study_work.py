@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.format.units import US
 from app.plots.study_data import Data
 from app.runs.study_choice import LIMITS, MAP, MEASURED, PROFILER, StudyChoice
 from app.session.study_work import Means, Record, Situation, StudyWork
@@ -53,6 +54,23 @@ class Bench:
 @pytest.fixture
 def bench() -> Bench:
     return Bench()
+
+
+def test_studies_are_told_in_units_of_choice_and_know_the_metric_ones(bench: Bench) -> None:
+    _, usual = bench.of(CHOICE)[-1]
+    _, data = bench.of(CHOICE, units=US)[-1]
+    figure, column = data["figures"][0], data["columns"][0]
+    assert (figure["unit"], column["unit"], column["now"]) == ("lbf", "mph", 9.321)
+    unit, factor = figure["metric"]
+    assert (unit, figure["now"] / factor) == ("kN", pytest.approx(usual["figures"][0]["now"], rel=1e-5))
+    unit, factor = column["metric"]
+    assert (unit, column["high"] / factor) == ("km/h", pytest.approx(usual["columns"][0]["high"], rel=1e-3))
+    assert column["first"] / column["step"] == pytest.approx(round(column["first"] / column["step"]))
+    assert column["y"][0][0] / figure["metric"][1] == pytest.approx(usual["columns"][0]["y"][0][0], rel=1e-5)
+    assert data["commands"] == usual["commands"]
+    _, mapped = bench.of(replace(CHOICE, view=MAP), units=US)[-1]
+    assert (mapped["x"]["unit"], mapped["y"]["unit"]) == ("mph", "lbf s/in")
+    assert mapped["x"]["at"][-1] == pytest.approx(mapped["x"]["high"], rel=1e-3)
 
 
 def test_a_profile_names_figures_parameters_and_what_matters(bench: Bench) -> None:

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import app.session.workspace
+from app.format.units import METRIC
 from app.runs.history import REST, Runs
 from app.runs.project import project_from, project_text
 from app.runs.request import Finished, Request, first_request
@@ -496,7 +497,51 @@ def test_the_browsers_look_is_taken_until_another_is_chosen(visit: Visit) -> Non
     assert again.again().window.dark
 
 
+def test_units_are_kept_by_the_browser_and_runs_are_named_in_them(visit: Visit) -> None:
+    visit.change(SPEED_KEY, 20)
+    visit.workspace.rename("Mine, 20 km/h")
+    visit.workspace.pin()
+    visit.change(AMPLITUDE_KEY, 0.2)
+    visit.workspace.choose_units({"speed": "mph"})
+    visit.workspace.choose_units({"length": "in", "force": "stone"})
+    visit.rest()
+    units = METRIC.changed({"speed": "mph", "length": "in"})
+    assert visit.window.units == visit.window.runs.units == units
+    names = ["Speed 9.321 → 12.43 mph, Amplitude 3.937 → 7.874 in", "Mine, 20 km/h", "Paper vehicle"]
+    assert visit.window.runs.rows == names
+    assert visit.window.runs.heading == names[0]
+    again = visit.again()
+    again.rest()
+    assert again.window.units == units
+    assert again.window.runs.rows == names
+    again.workspace.choose_units(METRIC.chosen)
+    again.rest()
+    assert again.window.runs.rows[0] == "Speed 15 → 20 km/h, Amplitude 100 → 200 mm"
+    assert again.stored is not None
+    assert again.stored.units == METRIC
+    assert again.config == visit.config
+
+
 # ── With a tab ──
+
+
+def test_all_of_the_page_is_told_in_the_units_of_choice(explore: Any, open_tab: Any) -> None:
+    tab: Tab = open_tab(explore())
+    wait_for(lambda: tab.shows_run(1))
+    tab.use("Units", "US")
+    wait_for(lambda: tab.widget("Speed, mph")["value"] == 9.321)
+    wait_for(lambda: tab.widget("Speeds")["value"] == "mph")
+    loads = wait_for(lambda: [props for props in tab.charts() if props["axes"][1].get("label") == "lbf"])
+    assert np.isclose(loads[0]["data"][1][0], 15e3 / 4.4482216, atol=0.01)
+    tab.use("Speed, mph", 20)
+    wait_for(lambda: tab.shows_run(2))
+    assert np.isclose(tab.charts()[0]["data"][1][0], 32186.88 / 4.4482216, atol=0.01)
+    tab.use("Tabs in front", "Runs")
+    wait_for(lambda: "Peak load, lbf" in tab.html("<trackride-figures"))
+    assert "Suspension travel, in" in tab.html("<trackride-figures")
+    assert wait_for(lambda: tab.html("Speed 9.321 → 20 mph"))
+    tab.use("Speeds", "km/h")
+    wait_for(lambda: tab.widget("Speed, km/h")["value"] == 32.18688)
 
 
 def rows(tab: Tab) -> list[str]:

@@ -13,8 +13,11 @@ from PIL import Image
 
 from app.format.differences import figure_text
 from app.format.load_colours import RAMP, load_colours
+from app.format.load_unit import load_unit
 from app.format.markup import formula_html
+from app.format.units import US
 from app.panels.plot_page import marks_html
+from app.panels.wheel_card import card
 from app.plots.spectrum import Mark, named, spectrum_plot
 from app.tabs.about import LAWS, about_html
 from app.tabs.comfort import COMFORT_FIGURES, comfort_headline, comfort_page
@@ -26,6 +29,7 @@ from model.analysis.comfort import ride_comfort
 from model.analysis.modes import Mode, Modes, vehicle_modes
 from model.analysis.signals import CENTRE_OF_MASS, seat
 from model.analysis.spectrum import excitation
+from model.analysis.wheel_contact import wheel_state
 from model.config.parameters import GROUPS, NOTES, PARAMETERS
 from model.paper.errata import ERRATA
 from model.simulation.trajectory import Trajectory
@@ -80,6 +84,24 @@ def test_power_density_and_the_drivers_seat(run: Trajectory) -> None:
     forward = replace(run, config=PAPER.replace({"vehicle.seat.x": 3}))
     both = spectrum_plot(run, "#000000", MARKS, forward, at_seat=True)  # the baseline's driver has a seat of his own
     assert both.values[:, 1].max() > 1.5 * both.values[:, 0].max()
+
+
+def test_tabs_and_card_in_other_units(run: Trajectory) -> None:
+    spectrum = spectrum_plot(run, "#000000", MARKS, density=True, units=US)
+    metric = spectrum_plot(run, "#000000", MARKS, density=True)
+    assert (spectrum.unit, metric.unit) == ("g²/Hz", "m²/s³")
+    assert spectrum.values.max() == pytest.approx(metric.values.max() / 9.80665**2, rel=0.01)
+    assert "Both, g<" in comfort_page(run, units=US)
+    assert "VDV, m/s¹·⁷⁵<" in comfort_page(run, units=US)
+    assert " g weighted" in comfort_headline(run, units=US)
+    assert " lbf;" in trust_html(run, units=US)
+    assert "Normal load of road wheels, lbf<" in load_map(run, units=US)
+    assert "9.321 mph" in about_html(US)
+    state = wheel_state(run, 0, 1.0)
+    told = card(state, "#123456", load_unit(run.system, US), US)
+    assert f"{state.normal_load / 4.4482216152605:.0f} lbf" in told
+    assert " m/s" not in told
+    assert " mm" not in told
 
 
 def test_marks_are_named_and_the_highest_comes_first() -> None:

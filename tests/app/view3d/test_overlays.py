@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from app.format.load_unit import KILONEWTON
+from app.format.units import METRIC, US, Units
 from app.panels.wheel_card import card
 from app.view3d.ghost import Outline
 from app.view3d.meshes.hull import hull, hull_edges
@@ -80,9 +81,10 @@ def test_travel_bars_are_as_long_as_the_wheels_have_moved(scene: Scene) -> None:
     np.testing.assert_allclose(np.linalg.norm(bars[:, 1] - bars[:, 0], axis=1), np.ptp(travel, axis=0), atol=1e-5)
 
 
-def test_the_scale_bar_is_a_metre(scene: Scene) -> None:
-    start, end = scale_bar(scene.measures)[0]
-    assert np.linalg.norm(end - start) == pytest.approx(1.0, abs=1e-6)
+@pytest.mark.parametrize(("units", "long"), [(METRIC, 1.0), (US, 3 * 0.3048)])
+def test_the_scale_bar_is_a_metre_or_three_feet(scene: Scene, units: Units, long: float) -> None:
+    start, end = scale_bar(scene.measures, units.of("m"))[0]
+    assert np.linalg.norm(end - start) == pytest.approx(long, abs=1e-6)
 
 
 def test_the_ghost_of_the_same_run_lies_on_the_vehicle(scene: Scene) -> None:
