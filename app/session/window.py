@@ -33,11 +33,12 @@ from app.panels.page_setup import (
 from app.panels.palette import add_palette
 from app.panels.parameter_panel import ParameterPanel
 from app.panels.playback_panel import PlaybackPanel, covered
-from app.panels.plot_panel import RUNS, STUDY, PlotPanel
+from app.panels.plot_panel import RUNS, STUDY, TABS, PlotPanel
 from app.panels.runs_panel import RunsPanel
 from app.panels.shortcuts import add_shortcuts
 from app.panels.status_line import BUSY_DELAY, drive_facts, progress_line, run_line, status_line
 from app.panels.study_panel import StudyPanel
+from app.panels.tour import Tour
 from app.panels.view_panel import ViewPanel
 from app.panels.wheel_card import WheelCard
 from app.plots.curves import Beside
@@ -96,7 +97,7 @@ class Window:
             gui.main_panel.dock_left()
             self._signs = signs = add_page(gui)
             listen(signs, actions, lambda *typed: self._controls.enter(*typed))
-            self.address = AddressBar(gui)
+            self.address, self.tour = AddressBar(gui), Tour(gui)
             self._opened, self._tabs_opened = gui.add_html(""), 0
             self._controls = ParameterPanel(gui, presets, preset, config, actions)
             with self._controls.middle:
@@ -379,6 +380,11 @@ class Window:
         """Take note of the tabs of the plots that are seen; from this we also know that the page is laid out."""
         self._stands_at = 0.0
         self._plots.set_in_front(tabs)
+
+    @property
+    def tab_in_front(self) -> str:
+        """The first tab of the plots that is seen."""
+        return next((tab for tab in TABS if tab in self._plots.in_front), TABS[0])
 
     @property
     def runs_in_front(self) -> bool:
