@@ -39,9 +39,8 @@ def begin(explorer: Explorer) -> None:
 def test_a_first_visit_is_shown_five_steps_with_what_they_point_at(visitor: Explorer) -> None:
     page, card = visitor.page, tour(visitor)
     expect(card).to_contain_text("1 of 5")
-    page.wait_for_function(
-        FRAMED, arg=[0, '[data-trackride="panel"] .mantine-Slider-root:not([data-trackride-folder] *)']
-    )
+    speed = visitor.control("Speed").get_attribute("id")
+    page.wait_for_function(FRAMED, arg=[0, f"[id='{speed}']"])
     expect(card.get_by_role("button", name="Next")).to_be_focused()
     for step, points_at in enumerate(
         ('[data-trackride="view"]', '[data-dock-region="right"]', "#none", "#none"), start=2
