@@ -95,7 +95,7 @@ class Session:
             self._runner.close()
             raise
         self._workspace = Workspace(self._window, self._runner, self._presets)
-        self._address = Address(self._window, self._workspace, presets)
+        self._address = Address(self._window, self._workspace, presets, self._stands_at)
         self._transfers = Transfers(client, self, self._window, self._workspace, run)
         self._examples = ExampleShow(self._window, self._workspace, self._runner, self._moment, self._go_to)
         self._record: Record | None = None  # measured, for studies
@@ -534,6 +534,11 @@ class Session:
     def _moment(self) -> Moment:
         with self._lock:
             return Moment(self._playback.time, self._playback.playing)
+
+    def _stands_at(self) -> float | None:
+        """The time of a run that is paused, s; None: it plays, or a drive is shown."""
+        with self._lock:
+            return None if self._playback.playing or self._driving else self._playback.time
 
     def _go_to(self, moment: Moment) -> None:
         with self._lock:

@@ -10,6 +10,7 @@ import numpy as np
 import viser
 
 from app.format.colours import wheel_palette
+from app.format.link import Look
 from app.format.load_unit import load_unit
 from app.format.markup import element
 from app.format.parameters import choice_words, refusal
@@ -84,7 +85,7 @@ class Window:
         self._ghost_hidden = False  # the baseline's vehicle is of another size
         self._run_number = 0
         self._standpoint = ""  # from which the user last chose to look
-        self._to_look: tuple[Config, str, str] | None = None  # standpoint and wheel for when this vehicle is shown
+        self._to_look: tuple[Config, Look] | None = None  # for when this vehicle is shown
         self._road_due = 0.0  # monotonic s
         self._road_ahead = RoadAhead()
         self._notifications = Notifications(client)
@@ -349,27 +350,38 @@ class Window:
     # ── Looks ──
 
     @property
-    def looks(self) -> tuple[str, str]:
-        """Standpoint, and name of the wheel whose card is shown; empty where the user has chosen none."""
-        wheel = self._card.wheel
-        return self._standpoint, "" if wheel is None or self._run is None else wheel_names(self._run.system)[wheel]
+    def looks(self) -> Look:
+        """How the user looks at it; the time is told elsewhere."""
+        wheel, tab = self._card.wheel, self.tab_in_front
+        return Look(
+            self._standpoint,
+            "" if wheel is None or self._run is None else wheel_names(self._run.system)[wheel],
+            "" if tab == TABS[0] else tab,
+            camera=self.view.turned_camera,
+        )
 
-    def look(self, config: Config, view: str, wheel: str) -> None:
-        """Once this vehicle is shown, look from a standpoint and show the card of a wheel; both may be empty."""
-        self._to_look = config, view, wheel
+    def look(self, config: Config, look: Look) -> None:
+        """Look at it in this way, once this vehicle is shown."""
+        self._to_look = config, look
 
     def _look_as_asked(self) -> None:
         if self._to_look is None or self._run is None or self._to_view is not None:
             return
-        config, view, wheel = self._to_look
+        config, look = self._to_look
         if config != self._run.config:
             return
         self._to_look = None
         names = wheel_names(self._run.system)
-        if view:
-            self.set_view(view)
-        if wheel in names and names.index(wheel) != self._card.wheel:
-            self.pick_wheel(names.index(wheel))
+        if look.view:
+            self.set_view(look.view)
+        if look.wheel in names and names.index(look.wheel) != self._card.wheel:
+            self.pick_wheel(names.index(look.wheel))
+        if look.tab and look.tab != self.tab_in_front:
+            self.open_tab(look.tab)
+        if look.camera:
+            self._move_camera(look.camera[:3], look.camera[3:])
+        if look.time is not None:
+            self._actions.scrub(look.time)
 
     def set_view(self, view: str) -> None:
         """Look at the vehicle from a standpoint."""
@@ -493,10 +505,13 @@ class Window:
 
     def look_from(self, place: Place) -> None:
         """Move the camera there."""
+        self._move_camera(place.position, place.look_at)
+
+    def _move_camera(self, position: Sequence[float], look_at: Sequence[float]) -> None:
         camera = self._client.camera
         with self._client.atomic():
-            camera.position = np.array(place.position)
-            camera.look_at = np.array(place.look_at)
+            camera.position = np.array(position)
+            camera.look_at = np.array(look_at)
 
     @property
     def shows_run(self) -> bool:
