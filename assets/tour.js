@@ -91,6 +91,7 @@ if (!window.trackrideTour) {
     if (had && before?.isConnected) before.focus();
   };
   const go = (to) => {
+    const byKeys = document.activeElement.matches('.trackride-card button:focus-visible');
     step = to;
     const {title, text, at} = STEPS[step], last = step === STEPS.length - 1;
     frames.forEach((frame) => frame.remove());
@@ -111,13 +112,14 @@ if (!window.trackrideTour) {
     );
     at().flat()[0]?.scrollIntoView({block: 'nearest'});
     place();
-    next.focus();
+    if (document.activeElement === document.body) (byKeys ? next : card).focus();  // else the user is at something
   };
-  const start = () => {
+  const start = (asked = true) => {
     end();
     try { localStorage.setItem(SEEN, 'yes'); } catch { /* it may not be kept */ }
     before = document.activeElement;
-    card = make('div', {className: 'trackride-card'});
+    if (asked) before.blur();
+    card = make('div', {className: 'trackride-card', tabIndex: -1});
     Object.entries({role: 'dialog', 'aria-live': 'polite'}).forEach(([name, value]) => card.setAttribute(name, value));
     document.body.append(card);
     go(0);
@@ -190,7 +192,7 @@ if (!window.trackrideTour) {
     const wait = setInterval(() => {  // until the first run is there
       if (!document.querySelector('.uplot canvas') || !sliders().some(shown)) return;
       clearInterval(wait);
-      if (unseen() && step < 0) start();
+      if (unseen() && step < 0) start(false);
     }, 300);
   }
 }

@@ -41,6 +41,9 @@ def test_a_first_visit_is_shown_five_steps_with_what_they_point_at(visitor: Expl
     expect(card).to_contain_text("1 of 5")
     speed = visitor.control("Speed").get_attribute("id")
     page.wait_for_function(FRAMED, arg=[0, f"[id='{speed}']"])
+    expect(card).to_be_focused()  # no button yet: Space still plays
+    page.keyboard.press("Tab")
+    page.keyboard.press("Tab")
     expect(card.get_by_role("button", name="Next")).to_be_focused()
     for step, points_at in enumerate(
         ('[data-trackride="view"]', '[data-dock-region="right"]', "#none", "#none"), start=2
