@@ -3,7 +3,7 @@ PYTHON := $(firstword $(shell command -v python3.11) $(shell command -v python3)
 BIN := .venv/bin
 AS_ROOT := $(if $(filter-out 0,$(shell id -u)),sudo,)
 
-.PHONY: setup run test check bounds bench chromium readme structure paper pictures studies soak clean
+.PHONY: setup run test check bounds bench chromium readme structure paper pictures film studies soak clean
 
 setup: .venv/ready
 
@@ -55,6 +55,9 @@ paper: setup
 pictures: setup chromium paper
 	cp build/paper/claims.png assets/pictures/
 	$(BIN)/python -m tests.browser.pictures
+
+film: setup chromium
+	$(BIN)/python -m tests.browser.film
 
 studies: setup
 	$(BIN)/python -m tests.studies

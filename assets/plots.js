@@ -1,6 +1,6 @@
 // What the page itself does about the plots: marks (the time cursor, named frequencies), values at the cursor, zoom,
-// curves that are hidden with a click on their name, what the tools above the plots say of their shape, and telling which
-// tabs are in front.
+// curves that are hidden with a click on their name, what the tools above the plots say of their shape, telling which
+// tabs are in front, and plots by keyboard.
 // viser lists its charts in __viserTestpoints.uplots; without that list there are no marks, but all curves.
 // uPlot shares cursor and zoom among charts with the same sync key that are in view; one that comes into view later is
 // given the zoom here, and so are the load maps.
@@ -373,10 +373,58 @@ if (!window.trackridePlots) {
     });
     chart.over.addEventListener('mouseleave', () => setTimeout(window.trackridePlots, 0));
     useMouse(chart);
+    useKeys(chart);
+  };
+  let clicks = 0;
+  const goTo = (time) => trackrideInTurn(() => trackrideTell('at', JSON.stringify([Math.max(time, 0), ++clicks])));
+  // By keyboard: a plot is reached by Tab; ← → move its cursor by a pixel (with Shift ten), to where the curve has another
+  // point at least, Home and End to its ends, Enter puts the time there, Esc leaves it. Its values are told to who listens
+  const said = Object.assign(document.createElement('div'), {className: 'trackride-said', ariaLive: 'polite'});
+  document.body.append(said);
+  const useKeys = (chart) => {
+    const {over} = chart, timed = chart.cursor.sync.key === TIME, unit = chart.axes[1].label;
+    over.tabIndex = 0;
+    over.setAttribute('role', 'application');
+    const title = () => chart.root.querySelector('.u-title').textContent;
+    const keys = `left and right arrow keys move the cursor${timed ? ', Enter goes to its time' : ''}, Escape leaves`;
+    let idx = null;
+    const show = () => {
+      const x = chart.data[0], at = [chart.valToPos(x[idx], 'x'), over.clientHeight / 2];
+      chart.setCursor({left: Math.min(Math.max(at[0], 0), over.clientWidth - 0.01), top: at[1]});
+      const values = shownRuns(chart).map((k) => `${chart.series[k].label} ${valueOf(chart, chart.data[k][idx], k, idx)}`);
+      said.textContent = `${x[idx].toFixed(2)} ${timed ? 's' : 'Hz'}: ${values.join(', ')} ${unit}`;
+    };
+    const leave = () => {
+      if (idx === null) return;
+      idx = null;
+      chart.setCursor({left: -10, top: -10});
+      setTimeout(window.trackridePlots, 0);  // the values at the time again
+    };
+    over.addEventListener('focus', () => {
+      over.ariaLabel = `${title()}: plot; ${keys}`;
+      if (!over.matches(':focus-visible')) return;  // by the mouse
+      const now = timed ? groupOf(chart).marks[0]?.[0] ?? 0 : chart.scales.x.min;
+      idx = chart.valToIdx(Math.min(Math.max(now, chart.scales.x.min), chart.scales.x.max));
+      show();
+    });
+    over.addEventListener('blur', leave);
+    over.addEventListener('keydown', (event) => {
+      const {key, shiftKey} = event, step = {ArrowLeft: -1, ArrowRight: 1}[key];
+      if (idx === null || !step && !['Home', 'End', 'Enter', 'Escape'].includes(key)) return;
+      event.preventDefault();
+      event.stopPropagation();  // elsewhere they step through the run
+      if (key === 'Escape') return over.blur();
+      const {min, max} = chart.scales.x, [first, last] = [chart.valToIdx(min), chart.valToIdx(max)];
+      const x = chart.data[0];
+      if (key === 'Enter') return timed ? goTo(x[idx]) : undefined;
+      const there = x[idx] + step * (shiftKey ? 10 : 1) * (max - min) / over.clientWidth;
+      const next = step > 0 ? Math.max(chart.valToIdx(there), idx + 1) : Math.min(chart.valToIdx(there), idx - 1);
+      idx = step ? Math.min(Math.max(next, first), last) : key === 'Home' ? first : last;
+      show();
+    });
   };
   // Where the mouse is, in figures; a click moves the time there; the wheel zooms, in plots beside the view with Ctrl, so
   // that the tab can be scrolled
-  let clicks = 0;
   const useMouse = (chart) => {
     const {over} = chart, timed = chart.cursor.sync.key === TIME, at = document.createElement('span');
     at.className = 'trackride-at';
@@ -392,8 +440,7 @@ if (!window.trackridePlots) {
     over.addEventListener('mousedown', (event) => pressed = event.clientX);
     over.addEventListener('click', (event) => {
       if (!timed || event.detail > 1 || Math.abs(event.clientX - (pressed ?? event.clientX)) > 3) return;
-      const time = chart.posToVal(event.clientX - over.getBoundingClientRect().left, 'x');
-      trackrideInTurn(() => trackrideTell('at', JSON.stringify([Math.max(time, 0), ++clicks])));
+      goTo(chart.posToVal(event.clientX - over.getBoundingClientRect().left, 'x'));
     });
     over.addEventListener('wheel', (event) => {
       if (!event.ctrlKey && document.documentElement.dataset.plots !== 'large') return;

@@ -8,7 +8,7 @@ from importlib import resources
 EXPLORER = (  # what its page needs
     *("head.html", "icon.svg", "page.js", "page.css", "address.js", "parameters.js", "parameters.css"),
     *("plots.js", "plots.css", "study.js", "study.css", "runs.js", "runs.css", "exports.css", "wheel.css"),
-    *("modal.css", "modal.js"),
+    *("modal.css", "modal.js", "tour.js", "tour.css"),
 )
 
 

@@ -1,8 +1,8 @@
 """What a page shows as the fragment of an address, and back: "m113&road.type=half_round&drive.speed_kmh=25". Pure.
 
 First the preset that comes nearest, then each value that differs from it, as a file would give it. `vs` is the
-baseline, written in the same way: "paper&drive.speed_kmh=20&vs=paper&vs.drive.speed_kmh=10". `view` and `wheel` say how
-one looks at it. Whoever opens a link gets what it says checked like a file.
+baseline, written in the same way: "paper&drive.speed_kmh=20&vs=paper&vs.drive.speed_kmh=10". `view`, `wheel`, `tab`,
+`time` and `camera` say how one looks at it. Whoever opens a link gets what it says checked like a file.
 """
 
 from __future__ import annotations
@@ -21,10 +21,22 @@ from model.config.validation import EXCLUSIVE, shorten
 
 LONGEST = 8000  # characters of a link that is given: mail and chat pass no longer ones on
 READABLE = 200_000  # characters of a link that is looked at
-VERSUS, VIEW, WHEEL = "vs", "view", "wheel"
+VERSUS, VIEW, WHEEL, TAB, TIME, CAMERA = "vs", "view", "wheel", "tab", "time", "camera"
+FAR = 1e4  # s or m, beyond which no time or place is taken
 PLAIN = ",:;/"  # characters that need no % in a fragment, beside letters, digits and ._-~
 PART = re.compile(r"road\.parts\.(\d{1,3})\.(\w+)", re.ASCII)
 WHEEL_NAME = re.compile(r"[RI][1-9]\d?", re.ASCII)
+
+
+@dataclass(frozen=True)
+class Look:
+    """How one looks at what a page shows. Empty or None: as usual."""
+
+    view: str = ""  # standpoint (app/view3d/camera.py)
+    wheel: str = ""  # the one whose card is shown, "R3"
+    tab: str = ""  # of the plots, in front
+    time: float | None = None  # s, of a run that is paused
+    camera: tuple[float, ...] = ()  # m, of a camera that was turned by hand: where it stands and what it looks at, (6,)
 
 
 @dataclass(frozen=True)
@@ -35,8 +47,7 @@ class Link:
     config: Config
     baseline_preset: str = ""  # the same of the baseline; empty: none
     baseline: Config | None = None
-    view: str = ""  # standpoint (app/view3d/camera.py); empty: the first one
-    wheel: str = ""  # the one whose card is shown, "R3"; empty: none
+    look: Look = Look()
 
 
 def link_text(link: Link, presets: Mapping[str, Config]) -> str:
@@ -45,12 +56,14 @@ def link_text(link: Link, presets: Mapping[str, Config]) -> str:
     if link.baseline is not None:
         words.append(f"{VERSUS}={quote(link.baseline_preset)}")
         words += _pairs(f"{VERSUS}.", presets[link.baseline_preset], link.baseline)
-    words += [f"{key}={_quoted(value)}" for key, value in ((VIEW, link.view), (WHEEL, link.wheel)) if value]
+    look = link.look
+    looks = {VIEW: look.view, WHEEL: look.wheel, TAB: look.tab, TIME: _text(look.time), CAMERA: _text(look.camera)}
+    words += [f"{key}={_quoted(value)}" for key, value in looks.items() if value]
     return "&".join(words)
 
 
-def link_from(text: str, presets: Mapping[str, Config], views: Collection[str]) -> Link:
-    """What a fragment says. views: standpoints that there are. Raises ConfigError with all faults."""
+def link_from(text: str, presets: Mapping[str, Config], views: Collection[str], tabs: Collection[str]) -> Link:
+    """What a fragment says. views, tabs: those that there are. Raises ConfigError with all faults."""
     if len(text) > READABLE:
         raise ConfigError([Fault("", "", f"the link is longer than {READABLE} characters")])
     first, *words = text.split("&")
@@ -64,11 +77,7 @@ def link_from(text: str, presets: Mapping[str, Config], views: Collection[str]) 
             faults.append(Fault(shorten(key), shorten(value), "is given twice"))
         else:
             given[key] = value
-    view, wheel = given.pop(VIEW, ""), given.pop(WHEEL, "")
-    if view and view not in views:
-        faults.append(_not_allowed(VIEW, view, "one of " + ", ".join(views)))
-    if wheel and not WHEEL_NAME.fullmatch(wheel):
-        faults.append(_not_allowed(WHEEL, wheel, "a wheel's name, such as R1 or I3"))
+    look = _look({key: given.pop(key, "") for key in (VIEW, WHEEL, TAB, TIME, CAMERA)}, views, tabs, faults)
     versus = given.pop(VERSUS, None)
     others = {key.removeprefix(f"{VERSUS}."): given.pop(key) for key in tuple(given) if key.startswith(f"{VERSUS}.")}
     if others and versus is None:
@@ -78,12 +87,36 @@ def link_from(text: str, presets: Mapping[str, Config], views: Collection[str]) 
     baseline = None if versus is None else _config(versus, others, presets, faults)
     if faults or config is None:
         raise ConfigError(faults)
-    return Link(preset, config, versus or "", baseline, view, wheel)
+    return Link(preset, config, versus or "", baseline, look)
 
 
 def nearest_preset(config: Config, presets: Mapping[str, Config], wanted: str = "") -> str:
     """The name of the preset from which least differs; of several the one that is wanted."""
     return min(presets, key=lambda name: (len(_changes(presets[name], config)), name != wanted))
+
+
+def _look(given: Mapping[str, str], views: Collection[str], tabs: Collection[str], faults: list[Fault]) -> Look:
+    """How one is to look, and more faults where that cannot be."""
+    time, camera = _numbers(given[TIME]), _numbers(given[CAMERA])
+    for key, fine, allowed in (
+        (VIEW, given[VIEW] in views, "one of " + ", ".join(views)),
+        (WHEEL, WHEEL_NAME.fullmatch(given[WHEEL]), "a wheel's name, such as R1 or I3"),
+        (TAB, given[TAB] in tabs, "one of " + ", ".join(tabs)),
+        (TIME, len(time) == 1 and time[0] >= 0, "a time of the run, s"),
+        (CAMERA, len(camera) == 6 and camera[:3] != camera[3:], "six numbers, m: where it stands, what it looks at"),
+    ):
+        if given[key] and not fine:
+            faults.append(_not_allowed(key, given[key], allowed))
+    return Look(given[VIEW], given[WHEEL], given[TAB], time[0] if time else None, camera)
+
+
+def _numbers(text: str) -> tuple[float, ...]:
+    """Those with commas between; none where one of them is none, or too far."""
+    try:
+        numbers = tuple(map(float, text.split(",")))
+    except ValueError:
+        return ()
+    return numbers if all(abs(number) < FAR for number in numbers) else ()
 
 
 def _config(name: str, given: Mapping[str, str], presets: Mapping[str, Config], faults: list[Fault]) -> Config | None:

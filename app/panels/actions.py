@@ -185,6 +185,20 @@ class Actions(Protocol):
     def steer(self, key: str, value: Any) -> None:
         """Give a parameter another value, as in a file, and let its control follow: the user moves it elsewhere."""
 
+    # First steps
+
+    def start_tour(self) -> None:
+        """Show the tour of the page from its first step."""
+
+    def try_example(self, name: str) -> None:
+        """Do an example (app/runs/examples.py) in the page."""
+
+    def undo_example(self) -> None:
+        """Go back to what was shown before the example."""
+
+    def keep_example(self) -> None:
+        """Leave everything as the example has made it, and put its card away."""
+
     # Downloads
 
     def export(self, what: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 from app.panels.actions import Actions
+from app.runs.examples import EXAMPLE
 from model.config.parameters import PARAMETER
 
 
@@ -20,5 +21,11 @@ def carry_out(text: str, actions: Actions) -> None:
             actions.open_link(content)
         case "reset", str() if content in PARAMETER:
             actions.reset_one(content)
+        case "example", str() if content in EXAMPLE:
+            actions.try_example(content)
+        case "undo example", _:
+            actions.undo_example()
+        case "keep example", _:
+            actions.keep_example()
         case "first", list():
             actions.set_first([key for key in content if isinstance(key, str)])

@@ -1,4 +1,4 @@
-"""What the command palette (Ctrl+K) finds besides the keys: parameters, tabs, exports, presets."""
+"""What the command palette (Ctrl+K) finds besides the keys: parameters, tabs, examples, exports, presets."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from app.panels.files_panel import DATA_BUTTONS, FIGURE_BUTTONS, MOTION_BUTTONS,
 from app.panels.parameter_panel import BOXED
 from app.panels.plot_panel import TABS
 from app.panels.units_panel import SYSTEMS
+from app.runs.examples import EXAMPLES
 from model.config.config import Config
 from model.config.parameters import PARAMETERS
 
@@ -31,6 +32,9 @@ def add_palette(gui: viser.GuiApi, presets: Mapping[str, Config], actions: Actio
         add(parameter.label, f"Parameter: {parameter.group}", partial(actions.lead_to, parameter.key))
     for tab in TABS:
         add(tab, "Tab", partial(actions.open_tab, tab))
+    add("Tour of the page", "First steps", actions.start_tour)
+    for example in EXAMPLES:
+        add(example.name, "Example", partial(actions.try_example, example.name))
     for group, buttons in EXPORTS.items():
         for name, what in buttons.items():
             add(f"{group}: {name}", "Export", partial(actions.export, what))

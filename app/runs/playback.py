@@ -73,10 +73,15 @@ def time_to_look(run: Trajectory, time: float) -> float:
         return time
     wheels, radius = run.q[:, run.system.wheel, 0], run.system.r
     now = min(int(np.searchsorted(run.t, time)), len(run.t) - 1)
-    if wheels[now].min() - radius <= uneven[1]:
-        return time
-    come = int((wheels.max(axis=1) + radius >= uneven[0] - AHEAD).argmax())
-    return float(run.t[come])
+    return time if wheels[now].min() - radius <= uneven[1] else time_before_obstacle(run)
+
+
+def time_before_obstacle(run: Trajectory) -> float:
+    """When the first wheel of a run of at least one sample comes to the first obstacle, s; 0 on a road without any."""
+    if run.road.uneven is None:
+        return 0.0
+    foremost = run.q[:, run.system.wheel, 0].max(axis=1) + run.system.r
+    return float(run.t[(foremost >= run.road.uneven[0] - AHEAD).argmax()])
 
 
 def _shapes(run: Trajectory) -> list[tuple[str, str]]:

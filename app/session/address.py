@@ -5,9 +5,11 @@ Only the thread that draws (app/session/session.py) uses it. Times are monotonic
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 
-from app.format.link import LONGEST, Link, link_from, link_text, nearest_preset
+from app.format.link import LONGEST, Link, Look, link_from, link_text, nearest_preset
+from app.panels.plot_panel import TABS
 from app.panels.view_panel import VIEWS
 from app.runs.request import Request
 from app.session.window import Window
@@ -22,9 +24,18 @@ TOO_LONG = "This road has too many points for a link. Send the file instead: Exp
 class Address:
     """Of one tab."""
 
-    def __init__(self, window: Window, workspace: Workspace, presets: Mapping[str, Config]) -> None:
-        """presets: name -> configuration; those that come with the program are known to every explorer."""
-        self._window, self._workspace = window, workspace
+    def __init__(
+        self,
+        window: Window,
+        workspace: Workspace,
+        presets: Mapping[str, Config],
+        stands_at: Callable[[], float | None],
+    ) -> None:
+        """presets: name -> configuration; those that come with the program are known to every explorer.
+
+        stands_at: the time of a run that is paused, s; None: it plays.
+        """
+        self._window, self._workspace, self._stands_at = window, workspace, stands_at
         self._presets = {name: presets[name] for name in preset_names() if name in presets}
         self._shown: tuple[object, ...] = ()  # what the address says
         self._shown_at = float("-inf")
@@ -35,7 +46,7 @@ class Address:
         """Let the address follow; `now`, s. To be called several times a second."""
         if not self._workspace.stands or now - self._shown_at < EVERY:
             return
-        present, steps, looks = self._workspace.present, self._workspace.steps, self._window.looks
+        present, steps, looks = self._workspace.present, self._workspace.steps, self._looks
         shown = (present.number, steps, looks)
         if shown == self._shown:
             return
@@ -44,16 +55,21 @@ class Address:
         self._shown, self._shown_at = shown, now
         self._window.address.show(self._text(), self._step)
 
+    @property
+    def _looks(self) -> Look:
+        time = self._stands_at()
+        return replace(self._window.looks, time=None if time is None else round(time, 2))
+
     def open(self, text: str) -> None:
         """Show what a fragment says."""
         try:
-            link = link_from(text, self._presets, tuple(VIEWS.values()))
+            link = link_from(text, self._presets, tuple(VIEWS.values()), TABS)
         except ConfigError as error:
             self._window.show_faults("This link cannot be used", error)
             self._shown = ()
             return
         self._workspace.open(link)
-        self._window.look(link.config, link.view, link.wheel)
+        self._window.look(link.config, link.look)
 
     def copy(self) -> None:
         """Give the user the address of what is shown."""
@@ -64,22 +80,20 @@ class Address:
         self._window.address.copy(text)
         self._window.say(
             "Link copied",
-            "It opens this vehicle, road, baseline and view. In an explorer on another machine, put what follows # "
-            "behind its own address.",
+            "It opens this vehicle, road and baseline, and what you look at. In an explorer on another machine, put "
+            "what follows # behind its own address.",
         )
 
     def _text(self) -> str:
         """The fragment; empty where it would be too long."""
         present, (_, baseline) = self._workspace.present, self._workspace.steps
         config = present.config()
-        view, wheel = self._window.looks
         link = Link(
             self._preset_of(present, config),
             config,
             "" if baseline is None else nearest_preset(baseline, self._presets),
             baseline,
-            view,
-            wheel,
+            self._looks,
         )
         text = link_text(link, self._presets)
         return text if len(text) <= LONGEST else ""

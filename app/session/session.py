@@ -20,6 +20,7 @@ import viser
 from app.panels.files_panel import PROJECT
 from app.panels.road_parts import with_part, without_last
 from app.plots.study_data import Data
+from app.runs.examples import EXAMPLE
 from app.runs.history import REST
 from app.runs.playback import Playback, of_another_kind, time_to_look
 from app.runs.project import SUFFIX
@@ -31,6 +32,7 @@ from app.runs.turns import SHOWING
 from app.session.address import Address
 from app.session.downloads import Download, Downloads
 from app.session.error_log import Seldom, kind_of
+from app.session.example_show import ExampleShow, Moment
 from app.session.studies import Studies
 from app.session.study_work import Record, Situation
 from app.session.transfers import Transfers
@@ -100,9 +102,10 @@ class Session:
             self._runner.close()
             raise
         self._workspace = Workspace(self._window, self._runner, self._presets)
-        self._address = Address(self._window, self._workspace, presets)
+        self._address = Address(self._window, self._workspace, presets, self._stands_at)
         self._downloads = Downloads(client, self, self._window)
         self._transfers = Transfers(client, self, self._window, self._workspace, run)
+        self._examples = ExampleShow(self._window, self._workspace, self._runner, self._moment, self._go_to)
         self._record: Record | None = None  # measured, for studies
         self._studies = Studies(
             presets,
@@ -269,6 +272,20 @@ class Session:
             self._studies.choice = choice
 
         self.post("study", choose)
+
+    def start_tour(self) -> None:
+        self.post("tour", lambda: self._window.tour.start())
+
+    def try_example(self, name: str) -> None:
+        if self._driving:
+            self.set_driving(False)
+        self.post("example", lambda: self._examples.begin(EXAMPLE[name]))
+
+    def undo_example(self) -> None:
+        self.post("example", lambda: self._examples.undo())
+
+    def keep_example(self) -> None:
+        self.post("example", lambda: self._examples.keep())
 
     def take_record(self, name: str, text: str) -> None:
         def take() -> None:
@@ -463,6 +480,7 @@ class Session:
                     if of_another_kind(run, last):
                         self._look_at_the_road(run)
                 self._workspace.finished(outcome, monotonic())
+                self._examples.finished(outcome, monotonic())
             case Driven(request, state):
                 with self._lock:
                     if self._refused is not None and request.number > self._refused.request.number:
@@ -518,6 +536,7 @@ class Session:
             self._look_at_the_road(self._good.trajectory)
         self._workspace.tick(now)
         self._downloads.tick(now)
+        self._examples.tick(now)
         self._address.tick(now)
         self._window.mark_changes(self._workspace.present)
         self._study(now, driving)
@@ -551,6 +570,21 @@ class Session:
                 self._stir()
         elif (news := self._place.news(self._window.place(self._playback), now)) is not None:
             self._window.store_place(news)
+
+    def _moment(self) -> Moment:
+        with self._lock:
+            return Moment(self._playback.time, self._playback.playing)
+
+    def _stands_at(self) -> float | None:
+        """The time of a run that is paused, s; None: it plays, or a drive is shown."""
+        with self._lock:
+            return None if self._playback.playing or self._driving else self._playback.time
+
+    def _go_to(self, moment: Moment) -> None:
+        with self._lock:
+            self._playback.scrub(moment.time)
+            self._playback.playing = moment.playing
+            self._pace()
 
     def _study(self, now: float, driving: bool) -> None:
         """Let studies begin or end, as it suits what the user does."""

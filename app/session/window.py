@@ -11,6 +11,7 @@ import viser
 
 from app.files.uploads import ProfileQuestion
 from app.format.colours import wheel_palette
+from app.format.link import Look
 from app.format.load_unit import load_unit
 from app.format.markup import element
 from app.format.parameters import choice_words, refusal
@@ -36,13 +37,14 @@ from app.panels.page_setup import (
 from app.panels.palette import add_palette
 from app.panels.parameter_panel import ParameterPanel
 from app.panels.playback_panel import PlaybackPanel, covered
-from app.panels.plot_panel import RUNS, STUDY, PlotPanel
+from app.panels.plot_panel import RUNS, STUDY, TABS, PlotPanel
 from app.panels.profile_form import ProfileForm
 from app.panels.question import ask
 from app.panels.runs_panel import RunsPanel
 from app.panels.shortcuts import add_shortcuts
 from app.panels.status_line import BUSY_DELAY, drive_facts, progress_line, run_line, status_line
 from app.panels.study_panel import StudyPanel
+from app.panels.tour import Tour
 from app.panels.units_panel import UnitsPanel
 from app.panels.view_panel import ViewPanel
 from app.panels.wheel_card import WheelCard
@@ -102,7 +104,7 @@ class Window:
         self._ghost_hidden = False  # the baseline's vehicle is of another size
         self._run_number = 0
         self._standpoint = ""  # from which the user last chose to look
-        self._to_look: tuple[Config, str, str] | None = None  # standpoint and wheel for when this vehicle is shown
+        self._to_look: tuple[Config, Look] | None = None  # for when this vehicle is shown
         self._road_due = 0.0  # monotonic s
         self._road_ahead = RoadAhead()
         self._notifications = Notifications(client)
@@ -115,7 +117,7 @@ class Window:
             gui.main_panel.dock_left()
             self._signs = signs = add_page(gui)
             listen(signs, actions, lambda *typed: self._controls.enter(*typed))
-            self.address = AddressBar(gui)
+            self.address, self.tour = AddressBar(gui), Tour(gui)
             self._opened, self._tabs_opened = gui.add_html(""), 0
             self._controls = ParameterPanel(gui, presets, preset, config, actions)
             with self._controls.middle:
@@ -418,27 +420,38 @@ class Window:
     # ── Looks ──
 
     @property
-    def looks(self) -> tuple[str, str]:
-        """Standpoint, and name of the wheel whose card is shown; empty where the user has chosen none."""
-        wheel = self._card.wheel
-        return self._standpoint, "" if wheel is None or self._run is None else wheel_names(self._run.system)[wheel]
+    def looks(self) -> Look:
+        """How the user looks at it; the time is told elsewhere."""
+        wheel, tab = self._card.wheel, self.tab_in_front
+        return Look(
+            self._standpoint,
+            "" if wheel is None or self._run is None else wheel_names(self._run.system)[wheel],
+            "" if tab == TABS[0] else tab,
+            camera=self.view.turned_camera,
+        )
 
-    def look(self, config: Config, view: str, wheel: str) -> None:
-        """Once this vehicle is shown, look from a standpoint and show the card of a wheel; both may be empty."""
-        self._to_look = config, view, wheel
+    def look(self, config: Config, look: Look) -> None:
+        """Look at it in this way, once this vehicle is shown."""
+        self._to_look = config, look
 
     def _look_as_asked(self) -> None:
         if self._to_look is None or self._run is None or self._to_view is not None:
             return
-        config, view, wheel = self._to_look
+        config, look = self._to_look
         if config != self._run.config:
             return
         self._to_look = None
         names = wheel_names(self._run.system)
-        if view:
-            self.set_view(view)
-        if wheel in names and names.index(wheel) != self._card.wheel:
-            self.pick_wheel(names.index(wheel))
+        if look.view:
+            self.set_view(look.view)
+        if look.wheel in names and names.index(look.wheel) != self._card.wheel:
+            self.pick_wheel(names.index(look.wheel))
+        if look.tab and look.tab != self.tab_in_front:
+            self.open_tab(look.tab)
+        if look.camera:
+            self._move_camera(look.camera[:3], look.camera[3:])
+        if look.time is not None:
+            self._actions.scrub(look.time)
 
     def set_view(self, view: str) -> None:
         """Look at the vehicle from a standpoint."""
@@ -449,6 +462,11 @@ class Window:
         """Take note of the tabs of the plots that are seen; from this we also know that the page is laid out."""
         self._stands_at = 0.0
         self._plots.set_in_front(tabs)
+
+    @property
+    def tab_in_front(self) -> str:
+        """The first tab of the plots that is seen."""
+        return next((tab for tab in TABS if tab in self._plots.in_front), TABS[0])
 
     @property
     def runs_in_front(self) -> bool:
@@ -583,10 +601,13 @@ class Window:
 
     def look_from(self, place: Place) -> None:
         """Move the camera there."""
+        self._move_camera(place.position, place.look_at)
+
+    def _move_camera(self, position: Sequence[float], look_at: Sequence[float]) -> None:
         camera = self._client.camera
         with self._client.atomic():
-            camera.position = np.array(place.position)
-            camera.look_at = np.array(place.look_at)
+            camera.position = np.array(position)
+            camera.look_at = np.array(look_at)
 
     @property
     def shows_run(self) -> bool:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from app.format.link import Link
 from app.format.units import METRIC, Units
@@ -25,6 +25,13 @@ from model.simulation.trajectory import Trajectory
 COMPARE_EVERY = 0.3  # s from one table of figures to the next while runs follow each other and the table is seen…
 BESIDE = 8  # kept runs at most that are shown beside the present one
 CALM = 0.3  # s … or without another run when it is not
+
+
+class Standing(NamedTuple):
+    """What a user has come to, so that we can lead back to it."""
+
+    done: Finished  # the run that is shown
+    baseline: Kept | None
 
 
 class Workspace:
@@ -82,6 +89,13 @@ class Workspace:
     def stands(self) -> bool:
         """Whether the browser has told what it has stored, and nothing that was requested is still to come."""
         return self._restored and same(self._runner.latest, self.present)
+
+    @property
+    def standing(self) -> Standing | None:
+        """What is shown, once nothing more is to come; None before that, and in a drive."""
+        if not self.stands or self._good is None or not same(self._good.request, self.present):
+            return None
+        return Standing(self._good, self._baseline) if len(self._good.trajectory.t) else None
 
     # ── What happens ──
 
@@ -210,6 +224,15 @@ class Workspace:
         other = self._baseline
         self._set_baseline(self._keep(self._good))
         self._request(other.request)
+
+    def compare_with(self, standing: Standing) -> None:
+        """Make the run of a standing, which is shown, the baseline."""
+        self._set_baseline(self._keep(standing.done))
+
+    def go_back(self, to: Standing) -> None:
+        """Show again what was shown, beside the baseline of then."""
+        self._set_baseline(to.baseline)
+        self._request(to.done.request)
 
     def clear_baseline(self) -> None:
         """Compare with no run."""

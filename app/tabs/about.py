@@ -1,4 +1,7 @@
-"""The About tab: the model's equations with the paper's numbers, and every parameter with symbol and source. Pure."""
+"""The About tab: first steps, the model's equations with the paper's numbers, and every parameter with its source.
+
+Pure.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ from typing import NamedTuple
 from app.format.markup import Html, element, formula_html, page, row, table, words_html
 from app.format.parameters import value_text
 from app.format.units import METRIC, Units
+from app.runs.examples import EXAMPLES
 from model.config.parameters import GROUPS, NOTES, PARAMETERS, Parameter
 
 
@@ -96,7 +100,14 @@ def about_html(units: Units = METRIC) -> str:
     """HTML of the whole tab."""
     laws = (part for law in LAWS for part in _law(law))
     tables = (part for group in GROUPS if group != NOTES for part in _group(group, units))
-    return page(element("p", SOURCE), *laws, element("h3", "Parameters"), *tables)
+    return page(_first_steps(), element("p", SOURCE), *laws, element("h3", "Parameters"), *tables)
+
+
+def _first_steps() -> Html:
+    """Buttons for the tour and the examples; assets/tour.js says what they do."""
+    tries = {"Tour of the page": "tour"} | {example.name: example.name for example in EXAMPLES}
+    buttons = (element("button", name, type="button", data_trackride_try=what) for name, what in tries.items())
+    return element("p", "First steps: ", *buttons, class_="trackride-tries")
 
 
 def _law(law: Law) -> list[Html]:

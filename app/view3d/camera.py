@@ -160,11 +160,21 @@ class Camera:
 
     def _go_again(self) -> None:
         """Go to the standpoint again, unless the user has moved the camera."""
-        if self._at is None or self._pose is None:
-            return
-        moved = np.linalg.norm(self._camera.position - self._pose.position)
-        if moved < 0.01 * np.linalg.norm(self._pose.position):
+        if self._at is not None and not self.turned:
             self.look(*self._at)
+
+    @property
+    def turned(self) -> tuple[float, ...]:
+        """Where the camera stands and what it looks at, m, (6,), to the centimetre; empty: it is at its standpoint.
+
+        The user may have moved it away.
+        """
+        if self._pose is None:
+            return ()
+        now = np.array([self._camera.position, self._camera.look_at], dtype=float)
+        moved = np.abs(now - self._pose[:2]).max()
+        near = 0.01 * np.linalg.norm(self._pose.position)
+        return () if moved < near else tuple(np.round(now, 2).ravel().tolist())
 
 
 def _aspect(camera: BrowserCamera) -> float:

@@ -134,6 +134,11 @@ class View3D:
                 self._obstacle.draw(scene, now)
             self._surroundings.draw(scene, now)
 
+    @property
+    def turned_camera(self) -> tuple[float, ...]:
+        """See app/view3d/camera.py."""
+        return self._camera.turned
+
     def set_view(self, standpoint: Standpoint) -> None:
         """Look at the vehicle from one of the standpoints; before the first run there is nothing to look at."""
         if self._scene is not None:

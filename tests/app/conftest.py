@@ -142,6 +142,7 @@ class FakeView:
         pass
 
     load_top = None
+    turned_camera: tuple[float, ...] = ()
 
     def set_view(self, standpoint: str) -> None:
         self.views.append(standpoint)

@@ -28,6 +28,7 @@ DRAWING = """['drawArrays', 'drawElements', 'drawArraysInstanced', 'drawElements
   const canvas = WebGL2RenderingContext.prototype, draw = canvas[name];
   canvas[name] = function (...what) { if (window.drawing) draw.apply(this, what); };
 })"""  # for pages that draw in 3-D only while they are told to
+TOURED = "try { localStorage.setItem('trackride-toured', 'yes') } catch { /* a page without an address */ }"
 NEW_CURVES = "old => document.querySelector('.uplot canvas').toDataURL() !== old"  # JavaScript
 
 expect.set_options(timeout=SOON)
@@ -65,8 +66,11 @@ def chromium(*flags: str) -> Iterator[Browser]:
 class Explorer:
     """The explorer's page, by what a user sees on it."""
 
-    def __init__(self, page: Page) -> None:
+    def __init__(self, page: Page, *, first_visit: bool = False) -> None:
+        """first_visit: the browser has never seen the tour, which begins by itself then."""
         self.page = page
+        if not first_visit:
+            page.add_init_script(TOURED)
         page.set_default_timeout(SOON)
 
     def open(self, address: str) -> Explorer:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from playwright.sync_api import Browser
+from playwright.sync_api import Browser, expect
 
 from tests.browser.driver import Explorer, chromium, running_explorer
 
 PICTURES = Path(__file__).parents[2] / "assets" / "pictures"
 SIZE = {"width": 1600, "height": 900}
+STUDIED = """localStorage.setItem('trackride-study', JSON.stringify({rows: ['absorbed_power', 'peak_load']}))"""
 GALLERY = {  # three vehicles on three roads: preset, what is set, time in s, and the view's key
     "m113": ("m113", {"road.type": "half_round", "road.height": 0.2, "road.radius": 0.3, "road.position": 8}, 2.1, "1"),
     "marder": ("marder", {"road.type": "random", "road.roughness_class": "E", "drive.speed_kmh": 30}, 7.1, "1"),
@@ -56,8 +57,16 @@ def main() -> None:
         take_gallery(browser)
         explorer = Explorer(browser.new_page(viewport=SIZE))
         page = explorer.page
+        page.add_init_script(STUDIED)
         open_at_rest(explorer, address)
         take(explorer, "explorer")
+
+        page.get_by_role("tab", name="Study").click()
+        page.get_by_title("Large, over the view").click()
+        expect(page.locator("trackride-study .body svg")).to_be_visible()
+        page.wait_for_timeout(15_000)  # the curves grow finer
+        take(explorer, "profiler")
+        page.keyboard.press("Escape")
 
         page.keyboard.press("b")
         page.get_by_role("tab", name="Runs").click()

@@ -132,6 +132,26 @@ def test_zoom_in_one_plot_is_the_zoom_of_all_over_tabs_and_runs(at_rest: Explore
     page.wait_for_function(f"() => ({MAP})()[0] < 0.1 && ({MAP})()[1] > 9.9")
 
 
+def test_a_plot_is_read_by_keyboard(at_rest: Explorer) -> None:
+    page = at_rest.page
+    show(page, "Loads")
+    plot, told = page.locator(".u-over:visible").first, page.locator(".trackride-said")
+    page.get_by_role("button", name="Large").locator("visible=true").first.focus()
+    page.keyboard.press("Tab")
+    expect(plot).to_be_focused()
+    expect(plot).to_have_accessible_name(re.compile("^Road wheel.*arrow keys move the cursor"))
+    expect(told).to_have_text(re.compile(r"^0\.00 s: R1 \d+\.\d+, R2 .* kN$"))
+    page.keyboard.press("Shift+ArrowRight")
+    expect(told).to_have_text(re.compile(r"^0\.[1-9]\d s: "))
+    page.keyboard.press("End")
+    expect(told).to_have_text(re.compile(r"^10\.00 s: "))
+    at_rest.wait_for_value("Time, s", "now === 0")  # the run is not stepped through meanwhile
+    page.keyboard.press("Enter")
+    at_rest.wait_for_value("Time, s", "now === 10")
+    page.keyboard.press("Escape")
+    expect(plot).not_to_be_focused()
+
+
 def test_one_cursor_goes_through_all_plots_and_the_values_at_it_are_shown(at_rest: Explorer) -> None:
     page = at_rest.page
     for tab, plots in (("Loads", 3), ("Ride", 4)):

@@ -7,18 +7,18 @@ from typing import Any
 
 import pytest
 
-from app.format.link import READABLE, Link, link_from, link_text, nearest_preset
+from app.format.link import READABLE, Link, Look, link_from, link_text, nearest_preset
 from model.config.config import Config, ConfigError
 from model.config.config_files import load_config, preset_names
 
 PRESETS = {name: load_config(name) for name in preset_names()}
-VIEWS = ("side", "front")
+VIEWS, TABS = ("side", "front"), ("Loads", "Load map")
 PARTS = [{"type": "sine", "amplitude": 0.05}, {"type": "half_round", "position": 9.5}]
 DAMPING = "vehicle.road_suspension.damping"
 
 
 def read(text: str) -> Link:
-    return link_from(text, PRESETS, VIEWS)
+    return link_from(text, PRESETS, VIEWS, TABS)
 
 
 def faults(text: str) -> list[str]:
@@ -75,13 +75,24 @@ def test_any_preset_can_be_told_from_any_other(preset: str, other: str) -> None:
 
 def test_baseline_view_and_wheel_are_told_too() -> None:
     now, before = (PRESETS["paper"].replace({"drive.speed_kmh": speed}) for speed in (20, 10))
-    link = Link("paper", now, "paper", before, "front", "R3")
+    link = Link("paper", now, "paper", before, Look("front", "R3"))
     told = link_text(link, PRESETS)
     assert told == "paper&drive.speed_kmh=20&vs=paper&vs.drive.speed_kmh=10&view=front&wheel=R3"
     assert read(told) == link
     other = replace(link, baseline_preset="m113", baseline=PRESETS["m113"])
     assert "&vs=m113&view" in link_text(other, PRESETS)
     assert read(link_text(other, PRESETS)) == other
+
+
+def test_tab_time_and_a_camera_turned_by_hand_are_told_where_they_are_not_as_usual() -> None:
+    look = Look("", "", "Load map", 3.25, (0.5, -9.0, 1.12, 0.0, 0.0, 0.75))
+    link = Link("paper", PRESETS["paper"], look=look)
+    told = link_text(link, PRESETS)
+    assert told == "paper&tab=Load+map&time=3.25&camera=0.5,-9,1.12,0,0,0.75"
+    assert read(told) == link
+    start = replace(link, look=Look(time=0.0))
+    assert link_text(start, PRESETS) == "paper&time=0"
+    assert read("paper&time=0") == start
 
 
 def test_the_preset_is_the_one_from_which_least_differs() -> None:
@@ -103,6 +114,13 @@ def test_the_preset_is_the_one_from_which_least_differs() -> None:
         ("paper&road.height=0.1", "road.height: a road of type sine has no such key"),
         ("paper&view=below", "view: 'below' is not allowed; give one of side, front"),
         ("paper&wheel=R0", "wheel: 'R0' is not allowed; give a wheel's name"),
+        ("paper&tab=Seat", "tab: 'Seat' is not allowed; give one of Loads, Load map"),
+        ("paper&time=-1", "time: -1 is not allowed; give a time of the run, s"),
+        ("paper&time=nan", "time: nan is not allowed"),
+        ("paper&time=1,2", "time: '1,2' is not allowed"),
+        ("paper&camera=1,2,3,4,5", "camera: '1,2,3,4,5' is not allowed; give six numbers, m"),
+        ("paper&camera=1,2,3,1,2,3", "camera: '1,2,3,1,2,3' is not allowed"),
+        ("paper&camera=1,2,3,4,5,1e300", "camera: '1,2,3,4,5,1e300' is not allowed"),
         ("paper&vs.drive.speed_kmh=5", "vs: the baseline's preset is missing; give vs=paper"),
         ("paper&vs=tank", "preset: 'tank' is not allowed"),
         ("paper&road.parts.1.type=sine", "road.parts: a road of type sine has no such key"),

@@ -74,6 +74,19 @@ def test_a_link_opens_vehicle_road_baseline_view_and_wheel(explore: Any, open_ta
     wait_for(lambda: session.shown.config == load_config("paper"), "what was shown before")
 
 
+def test_a_link_opens_tab_time_and_a_camera_turned_by_hand(explore: Any, open_tab: Any) -> None:
+    explorer = explore()
+    tab = open_at_rest(lambda: explorer, open_tab)
+    ask(tab, "paper&tab=Ride&time=1.5&camera=1,-9,2,0,0,0.5")
+    wait_for(lambda: 'of="Ride"' in tab.html("<trackride-front"), "the tab")
+    tab.use("Tabs in front", "Ride")  # as the page tells then
+    wait_for_address(tab, "paper&tab=Ride&time=1.5")  # this tab's camera cannot be moved
+    moved = [message for message in tab.messages if message["type"] == "SetCameraPositionMessage"]
+    assert tuple(moved[-1]["position"]) == (1, -9, 2)
+    tab.press("Play or pause")
+    wait_for_address(tab, "paper&tab=Ride")
+
+
 def test_a_link_comes_before_what_the_browser_has_stored(explore: Any, open_tab: Any) -> None:
     explorer, storage = explore(), {}
     tab = open_at_rest(lambda: explorer, open_tab, storage=storage)

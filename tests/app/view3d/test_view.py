@@ -325,6 +325,18 @@ def test_the_camera_fits_a_new_shape_of_the_picture_unless_moved(tab: Tab, paper
     np.testing.assert_array_equal(tab.camera.position, aside)
 
 
+def test_only_a_camera_that_the_user_has_turned_is_told(tab: Tab, paper: Trajectory) -> None:
+    view = View3D(tab)  # type: ignore[arg-type]
+    assert view.turned_camera == ()
+    view.show(paper)
+    view.set_view("front")
+    assert view.turned_camera == ()
+    tab.camera.position = np.array([1.234, -5.0, 2.0])
+    assert view.turned_camera == (1.23, -5.0, 2.0, *np.round(tab.camera.look_at, 2))
+    view.set_view("side")
+    assert view.turned_camera == ()
+
+
 def test_a_picked_wheel_has_a_ring_that_goes_with_it_and_goes_again(tab: Tab, paper: Trajectory) -> None:
     view = View3D(tab)  # type: ignore[arg-type]
     view.show(paper)
