@@ -50,14 +50,16 @@ def open_tab(browser: Browser, address: str) -> Iterator[OpenTab]:
 @pytest.fixture(scope="package")
 def shared(browser: Browser, address: str) -> Iterator[Explorer]:
     context = new_context(browser)
-    yield Explorer(context.new_page()).open(f"{address}/?fixedDpr=0.25")
+    explorer = Explorer(context.new_page()).open(f"{address}/?fixedDpr=0.25")
+    explorer.strips.uncheck()
+    yield explorer
     context.close()
 
 
 @pytest.fixture
 def at_rest(shared: Explorer) -> Explorer:
     """The tab that the tests share, since opening one takes seconds: paused, so that it draws only changes, at the
-    run's start, with the parameters of the paper's vehicle. A test leaves folders closed as it found them; what it pins
-    or keeps stays."""
+    run's start, with the parameters of the paper's vehicle, without strips on the sliders. A test leaves strips and
+    folders as it found them; what it pins or keeps stays."""
     shared.come_to_rest()
     return shared

@@ -29,6 +29,7 @@ DRAWING = """['drawArrays', 'drawElements', 'drawArraysInstanced', 'drawElements
   canvas[name] = function (...what) { if (window.drawing) draw.apply(this, what); };
 })"""  # for pages that draw in 3-D only while they are told to
 TOURED = "try { localStorage.setItem('trackride-toured', 'yes') } catch { /* a page without an address */ }"
+FOLDER = "[data-trackride-folder] > [role=button]"  # what opens and closes it
 NEW_CURVES = "old => document.querySelector('.uplot canvas').toDataURL() !== old"  # JavaScript
 
 expect.set_options(timeout=SOON)
@@ -81,8 +82,11 @@ class Explorer:
         return self
 
     def come_to_rest(self) -> None:
-        """As after opening, but paused at the start of the run and without messages."""
+        """As after opening, but paused at the start of the run, without messages and with all folders closed."""
         self.close_messages()
+        self.page.locator(f"{FOLDER}:has(> svg[class*='chevron-up'])").evaluate_all(
+            "all => all.forEach(one => one.click())"  # a test that failed leaves them open
+        )
         if self.mode("Drive").is_visible():
             self.mode("Run", on=False).click()
             expect(self.status).to_contain_text("real time")
@@ -124,6 +128,11 @@ class Explorer:
         return self.page.locator(".trackride-status")
 
     @property
+    def strips(self) -> Locator:
+        """The box that switches the strips on the sliders; while they are on, each run is followed by a study."""
+        return self.page.get_by_label("What each slider would do")
+
+    @property
     def charts(self) -> Locator:
         return self.page.locator(".uplot canvas")
 
@@ -158,9 +167,12 @@ class Explorer:
         self.thumb(label).focus()
         self.page.keyboard.press(key)
 
-    def fold(self, folder: str) -> None:
+    def fold(self, name: str) -> None:
         """Open or close a folder of controls."""
-        self.page.get_by_text(folder, exact=True).first.click()  # not a heading in the plots' panel
+        folder = self.page.locator(FOLDER).filter(has_text=re.compile(f"^{name}$"))
+        is_open = folder.get_attribute("aria-expanded") == "true"
+        folder.click()
+        expect(folder).to_have_attribute("aria-expanded", "false" if is_open else "true")
 
     def run_number(self) -> int:
         found = re.search(r"Run (\d+)", self.status.inner_text())

@@ -40,6 +40,7 @@ PALE = """least => {
 
 def test_all_text_stands_out_from_what_is_behind_it(at_rest: Explorer) -> None:
     page = at_rest.page
+    at_rest.strips.check()
     for look in ("dark", "light"):
         at_rest.fold("View")
         at_rest.control("Dark").evaluate("box => box.click()")
@@ -50,3 +51,4 @@ def test_all_text_stands_out_from_what_is_behind_it(at_rest: Explorer) -> None:
             with suppress(PlaywrightTimeoutError):  # colours change in a moment
                 page.wait_for_function(f"least => !({PALE})(least).length", arg=LEAST, timeout=SOON)
             assert page.evaluate(PALE, LEAST) == [], f"{tab}, {look}"
+    at_rest.strips.uncheck()

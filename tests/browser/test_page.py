@@ -11,7 +11,7 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.browser.conftest import SIZE
-from tests.browser.driver import SOON, Explorer
+from tests.browser.driver import FOLDER, SOON, Explorer
 
 BOXES = """() => Object.fromEntries(Object.entries({
   view: 'canvas[data-engine]', plots: '[data-dock-region="right"]', controls: '[data-dock-region="left"]',
@@ -57,11 +57,11 @@ def test_the_panels_share_pages_of_all_sizes(at_rest: Explorer, width: int, heig
 
 def test_all_that_can_be_used_has_a_name_in_closed_folders_and_in_open_ones(at_rest: Explorer) -> None:
     page = at_rest.page
-    folders = page.locator("[data-trackride-folder] > [role=button]")
+    folders = page.locator(FOLDER)
     names = [folder.inner_text() for folder in folders.all()]
     assert len(names) >= 10
     for name in names:
-        folder = page.locator("[data-trackride-folder] > [role=button]").filter(has_text=re.compile(f"^{name}$"))
+        folder = page.locator(FOLDER).filter(has_text=re.compile(f"^{name}$"))
         folder.focus()
         page.keyboard.press("Enter")
         expect(folder).to_have_attribute("aria-expanded", "true")
@@ -69,7 +69,7 @@ def test_all_that_can_be_used_has_a_name_in_closed_folders_and_in_open_ones(at_r
     nameless = re.compile(rf"^\s*- ({'|'.join(USED)})(?! \")\b.*$", re.MULTILINE)
     assert [found.group().strip() for found in nameless.finditer(page.locator("body").aria_snapshot())] == []
     for name in names:
-        folder = page.locator("[data-trackride-folder] > [role=button]").filter(has_text=re.compile(f"^{name}$"))
+        folder = page.locator(FOLDER).filter(has_text=re.compile(f"^{name}$"))
         folder.focus()
         page.keyboard.press("Space")
         expect(folder).to_have_attribute("aria-expanded", "false")

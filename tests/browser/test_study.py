@@ -19,11 +19,13 @@ DONE = "trackrideStudy.data.profiler?.done && trackrideStudy.data.profiler.colum
 @pytest.fixture
 def study(at_rest: Explorer) -> Iterator[Explorer]:
     """With the tab in front, and few parameters: each run takes its time on a busy machine."""
+    at_rest.strips.check()
     at_rest.page.get_by_role("tab", name="Study").click()
     at_rest.page.wait_for_function(f"{DONE}[0].now === 75.53", timeout=FIRST_RUN)
     yield at_rest
     at_rest.page.get_by_role("button", name="Profiler").click()
     at_rest.page.get_by_role("tab", name="Loads").click()
+    at_rest.strips.uncheck()
 
 
 def panel(explorer: Explorer, place: int) -> Locator:
@@ -76,11 +78,10 @@ def test_a_slider_that_moves_gives_it_up(study: Explorer) -> None:
 
 
 def test_the_strips_can_be_switched_off(study: Explorer) -> None:
-    box = study.page.get_by_label("What each slider would do")
-    box.uncheck()
+    study.strips.uncheck()
     expect(study.page.locator(".trackride-strip")).to_have_count(0)
     expect(study.page.locator("trackride-matters")).not_to_contain_text("mostly")
-    box.check()
+    study.strips.check()
     expect(study.page.locator(".trackride-strip")).to_have_count(len(WHAT_IF))
 
 

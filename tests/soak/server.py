@@ -21,7 +21,6 @@ from tests.soak.outcome import Outcome, memory_of
 
 START = 120.0  # s until a server listens on a machine that has to compile first
 SOON = 20.0  # s in which a tab is answered, however busy the machine is
-TABS = 8
 BETWEEN = 0.05  # s between two messages of a drag
 GIVEN_BACK = 60.0  # s within which memory comes back
 GROWTH = 200.0  # MB by which a server may have grown after all tabs are gone
@@ -87,27 +86,27 @@ def connects(count: int, seed: int = 0) -> Outcome:
     return outcome
 
 
-def dragging(seconds: float, seed: int = 0) -> Outcome:
-    """Eight tabs drag the speed at once; all end at the run of their last value, and memory comes back."""
-    outcome = Outcome("Eight tabs dragging", f"{TABS} tabs drag for {seconds:.0f} s, seed {seed}.")
+def dragging(seconds: float, tabs: int = 8, seed: int = 0) -> Outcome:
+    """So many tabs drag the speed at once; all end at the run of their last value, and memory comes back."""
+    outcome = Outcome("Tabs dragging at once", f"{tabs} tabs drag for {seconds:.0f} s, seed {seed}.")
     rng = np.random.default_rng(seed)
     with serving() as server:
         stays = _tab(server)
         _wait_for_run(stays)
         before = server.memory
-        tabs = [_tab(server) for _ in range(TABS)]
-        for tab in tabs:
+        dragged = [_tab(server) for _ in range(tabs)]
+        for tab in dragged:
             _wait_for_run(tab)
-        end, speed = time.monotonic() + seconds, np.full(TABS, 20.0)
+        end, speed = time.monotonic() + seconds, np.full(tabs, 20.0)
         while time.monotonic() < end:
-            speed = np.clip(speed + rng.normal(0.0, 0.5, TABS), 5.0, 60.0).round(1)
-            for tab, value in zip(tabs, speed, strict=True):
+            speed = np.clip(speed + rng.normal(0.0, 0.5, tabs), 5.0, 60.0).round(1)
+            for tab, value in zip(dragged, speed, strict=True):
                 tab.use("Speed, km/h", float(value))
                 tab.messages.clear()
                 outcome.endings["moves of a slider"] += 1
             time.sleep(BETWEEN)
         outcome.notes.append(f"Memory: {before:.0f} MB with one tab, {server.memory:.0f} MB at the end of the drag.")
-        for number, tab in enumerate(tabs):
+        for number, tab in enumerate(dragged):
             if not _answers(tab, 33.0 + number):
                 outcome.faults.append(f"tab {number} is not answered after the drag")
             tab.close()

@@ -43,7 +43,7 @@ def test_the_text_that_a_mutant_changes_stands_once_in_its_file() -> None:
 
 @pytest.mark.parametrize(
     "part",
-    [lambda: connects(5), lambda: dragging(2.0), lambda: driving(10.0), lambda: interruptions(3, busy=10.0)],
+    [lambda: connects(5), lambda: dragging(2.0, tabs=4), lambda: driving(10.0), lambda: interruptions(3, busy=10.0)],
     ids=["connects", "dragging", "driving", "interruptions"],
 )
 def test_the_explorer_and_its_files_outlast(part: object) -> None:

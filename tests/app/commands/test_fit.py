@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from app import cli
 from model import load_config, simulate
-from tests.app.commands.support import done
+from tests.app.commands.support import done_here
 
 DAMPING = "vehicle.road_suspension.damping"
 SETTINGS = {"simulation.duration": 3, "drive.speed_kmh": 25}
@@ -29,7 +29,7 @@ def record(tmp_path):
 
 
 def test_a_damper_is_found_with_its_interval(record, tmp_path):
-    status, told, said = done(
+    status, told, said = done_here(
         "fit", "paper", *SET, "--measured", record.name, "--over", f"{DAMPING}=2000:20000", "--out", "found",
         folder=tmp_path,
     )  # fmt: skip

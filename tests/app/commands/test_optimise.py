@@ -9,14 +9,14 @@ from typer.testing import CliRunner
 
 from app import cli
 from model import load_config
-from tests.app.commands.support import done, done_here
+from tests.app.commands.support import done_here
 
 DAMPING = "vehicle.road_suspension.damping"
 SHORT = ("--set", "simulation.duration=1", "--over", f"{DAMPING}=2000:20000", "--generations", "1", "--out", "found")
 
 
 def test_the_best_is_written_as_a_configuration(tmp_path):
-    status, told, said = done(
+    status, told, said = done_here(
         "optimise", "paper", "--minimise", "acceleration_peak", "--subject-to", "peak_load<=60", "--roads",
         "half_round", *SHORT, folder=tmp_path,
     )  # fmt: skip

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from app import cli
 from app.commands import analysis
-from tests.app.commands.support import done, done_here
+from tests.app.commands.support import done_here
 
 COMMAND = (
     "sensitivity", "paper", "--set", "simulation.duration=2", "--over", "drive.speed_kmh=10:20",
@@ -18,7 +18,7 @@ COMMAND = (
 
 
 def test_page_figure_and_table_are_written_and_a_second_time_takes_no_runs(tmp_path):
-    status, told, said = done(*COMMAND, folder=tmp_path)
+    status, told, said = done_here(*COMMAND, folder=tmp_path)
     assert (status, said) == (0, "")
     assert "The page is found/index.html; beside it: figure.png, figure.svg, table.csv." in told
     folder = tmp_path / "found"

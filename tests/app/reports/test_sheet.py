@@ -43,6 +43,21 @@ def soft() -> Trajectory:
     return simulate(SOFT)
 
 
+@pytest.fixture(scope="module")
+def alone(paper) -> Sheet:
+    return compose(paper, None, None, "Title")
+
+
+@pytest.fixture(scope="module")
+def compared(paper, soft) -> Sheet:
+    return compose(soft, paper, None, "Title")
+
+
+@pytest.fixture(scope="module")
+def pictured(paper) -> Sheet:
+    return compose(paper, None, picture(), "Title")
+
+
 def short_run(changes: dict) -> Trajectory:
     return simulate(PAPER.replace({"simulation.duration": 1.5, "simulation.output_rate": 100, **changes}))
 
@@ -110,20 +125,19 @@ def test_another_suffix_is_refused(paper):
         stamped_figure(paper, None, None, "x", ".pdf")
 
 
-def test_what_was_changed_comes_first_and_everything_is_there(paper, soft):
-    sheet = compose(soft, paper, None, "Title")
-    texts = placed(sheet)
+def test_what_was_changed_comes_first_and_everything_is_there(compared):
+    texts = placed(compared)
     height = {text.get_text(): text.get_position()[1] for text in texts}
     assert height["2.366 kN s/m"] == height["was 4.732 kN s/m"]
     others = [value for label, value in height.items() if label in ("5125 kg", "75.53 kN/m", "15 km/h", "60 MN/m²")]
     assert len(others) == 4
     assert all(value < height["2.366 kN s/m"] for value in others)
-    assert "4.732 kN s/m" not in words(sheet)
-    assert sum(label.startswith("Suspension damping") for label in words(sheet)) == 1
+    assert "4.732 kN s/m" not in words(compared)
+    assert sum(label.startswith("Suspension damping") for label in words(compared)) == 1
 
 
-def test_without_a_baseline_changes_are_against_the_papers_vehicle(paper, soft):
-    assert "as in the paper's vehicle" in words(compose(paper, None, None, "Title"))
+def test_without_a_baseline_changes_are_against_the_papers_vehicle(soft, alone):
+    assert "as in the paper's vehicle" in words(alone)
     sheet = compose(soft, None, None, "Title")
     assert "was 4.732 kN s/m" in words(sheet)
     assert "baseline" not in words(sheet)
@@ -134,17 +148,16 @@ def test_without_a_baseline_changes_are_against_the_papers_vehicle(paper, soft):
     assert not any("None" in word for word in round_one)
 
 
-def test_the_ride_figures_stand_beside_the_baselines(paper, soft):
-    sheet = compose(soft, paper, None, "Title")
+def test_the_ride_figures_stand_beside_the_baselines(paper, soft, compared):
     for run in (paper, soft):
-        assert figure_text(Summary(run).acceleration_rms) in words(sheet)
+        assert figure_text(Summary(run).acceleration_rms) in words(compared)
         felt = Summary(run).seat
         assert felt is not None
-        assert {figure_text(value) for value in (felt.shock, felt.dose, felt.transient)} <= set(words(sheet))
-        assert figure_text(run.normal_load[:, 0].max() / 1e3) in words(sheet)
+        assert {figure_text(value) for value in (felt.shock, felt.dose, felt.transient)} <= set(words(compared))
+        assert figure_text(run.normal_load[:, 0].max() / 1e3) in words(compared)
     change = 100 * (soft.normal_load[:, 5].max() / paper.normal_load[:, 5].max() - 1)
-    assert f"{change:+.1f}".replace("-", "−") in words(sheet)
-    assert f"means of {window(soft).start:.2f} to {window(soft).end:.2f} s" in words(sheet)
+    assert f"{change:+.1f}".replace("-", "−") in words(compared)
+    assert f"means of {window(soft).start:.2f} to {window(soft).end:.2f} s" in words(compared)
 
 
 def test_the_plots_show_both_runs_in_the_wheels_colours(paper, soft):
@@ -166,19 +179,18 @@ def test_the_plots_show_both_runs_in_the_wheels_colours(paper, soft):
     np.testing.assert_allclose(acceleration[1].get_ydata(), soft.a[:, 0, 1])
 
 
-def test_a_picture_that_is_given_is_shown_and_its_time_marked(paper):
+def test_a_picture_that_is_given_is_shown_and_its_time_marked(paper, pictured):
     sheet = compose(paper, None, picture((250, 20, 200)), "Title", time=2.5)
     FigureCanvasAgg(sheet.figure).draw()
     pixels = np.asarray(sheet.figure.canvas.buffer_rgba())[..., :3].astype(int)
     assert (np.abs(pixels - (250, 20, 200)).max(axis=2) < 8).sum() > 0.8 * (2.6 * DPI) ** 2 * 16 / 9
     for axes in plots(sheet).values():
         assert list(axes.get_lines()[-1].get_xdata()) == [2.5, 2.5]
-    unmarked = compose(paper, None, picture(), "Title")
-    assert len(curves(plots(unmarked)["Normal load of road wheels, kN"])) == 6
+    assert len(curves(plots(pictured)["Normal load of road wheels, kN"])) == 6
 
 
-def test_peaks_are_dots_and_the_largest_has_its_number(paper):
-    axes = plots(compose(paper, None, picture(), "Title"))["Normal load of road wheels, kN"]
+def test_peaks_are_dots_and_the_largest_has_its_number(paper, pictured):
+    axes = plots(pictured)["Normal load of road wheels, kN"]
     dots = [line for line in axes.get_lines() if line.get_marker() == "o"]
     assert [float(dot.get_ydata()[0]) for dot in dots] == pytest.approx(paper.peaks.load[:6] / 1e3, abs=0.01)
     assert [float(dot.get_xdata()[0]) for dot in dots] == pytest.approx(paper.peaks.load_time[:6])
@@ -247,7 +259,7 @@ def test_everything_fits_on_the_page(case):
 
 
 @pytest.mark.parametrize("baseline", [False, True])
-def test_of_many_wheels_those_that_matter_are_told_in_type_that_can_be_read(baseline):
+def test_of_many_wheels_those_that_matter_are_told_in_type_that_can_be_read(alone, baseline):
     many = short_run({"vehicle.road_wheels.count": 20})
     sheet = compose(
         many, short_run({"vehicle.road_wheels.count": 20, "road.amplitude": 0.05}) if baseline else None, None, ""
@@ -258,14 +270,16 @@ def test_of_many_wheels_those_that_matter_are_told_in_type_that_can_be_read(base
     assert told >= {"R1", "R20", "I1", "I19", f"R{most_loaded[:20].argmax() + 1}", f"I{most_loaded[20:].argmax() + 1}"}
     assert len(told) <= 11
     assert any(word.startswith("Of 39 wheels") for word in words(sheet))
-    assert not any(word.startswith("Of 11") for word in words(compose(short_run({}), None, None, "")))
+    assert not any(word.startswith("Of 11") for word in words(alone))
 
 
 @pytest.mark.parametrize("preset", [None, "m113", "robot"])
-def test_texts_of_a_row_do_not_run_into_each_other(paper, soft, preset):
+def test_texts_of_a_row_do_not_run_into_each_other(compared, preset):
     """A preset's parameters, all of them unchanged against itself, stand in columns."""
-    run = soft if preset is None else simulate(load_config(preset).replace({"simulation.duration": 1.5}))
-    sheet = compose(run, paper if preset is None else run, None, "Title")
+    sheet = compared
+    if preset is not None:
+        run = simulate(load_config(preset).replace({"simulation.duration": 1.5}))
+        sheet = compose(run, run, None, "Title")
     renderer = FigureCanvasAgg(sheet.figure).get_renderer()
     rows: dict[float, list] = {}
     for text in placed(sheet):
@@ -275,13 +289,13 @@ def test_texts_of_a_row_do_not_run_into_each_other(paper, soft, preset):
         assert all(one.x1 < other.x0 for one, other in pairwise(boxes))
 
 
-def test_a_run_that_ended_early_says_so(paper):
+def test_a_run_that_ended_early_says_so(paper, alone):
     broken = replace(paper, status="diverged at t = 1.5 s: the step became too small")
     assert any(
         "Mind: the run is not complete: diverged at t = 1.5 s" in word
         for word in words(compose(broken, None, None, ""))
     )
-    assert not any("Mind" in word for word in words(compose(paper, None, None, "")))
+    assert not any("Mind" in word for word in words(alone))
 
 
 def test_several_threads_may_make_figures_at_once(paper):
