@@ -20,12 +20,12 @@ from model.dynamics.kernel_contact import load_of
 from model.dynamics.lanes import HEAD, LANES, SCRATCH_SIZE, STATE_SIZE, C, W, Y, blocks, rows, state_size
 from model.dynamics.vehicle import System
 from model.simulation.dense import CUBIC, SPARE, Memory, entry_within, state_within
-from model.simulation.peaks import FOUND
 
 PITCH, RISING = 2, 4  # entries of the flat state: θ and ẏ of the chassis
 LOOKS = 3  # into a step in which a wheel lands or lifts off
 LAST_LOOKS = 8  # parts of the last step, between which is looked
-SEARCHES = 8  # for a peak, at most: until one look is FOUND, as a share, or less above the one before
+SEARCHES = 8  # for a peak, at most …
+FOUND = 0.002  # … until one looks no further than this share of it above the one before
 BEFORE, HERE, NEXT = range(3)  # the start of the step before, the start and the end of this step
 OF_WHEELS = (
     *("before", "here", "next"),  # loads at these, N

@@ -10,8 +10,6 @@ import numpy as np
 from model.dynamics.ground import depth
 from model.dynamics.vehicle import System
 
-FOUND = 0.002  # share of a peak to which it is sought
-
 
 @dataclass(frozen=True)
 class Peaks:
@@ -41,16 +39,17 @@ class Peaks:
                 largest[key] = np.take_along_axis(found[key], best[None], axis=0)[0]
         return Peaks(**largest)
 
-    def beside(self, t: np.ndarray, load: np.ndarray, acceleration: np.ndarray) -> Peaks:
+    def beside(self, t: np.ndarray, load: np.ndarray, acceleration: np.ndarray, found_to: float) -> Peaks:
         """Where a sample shows more than was found, that: in long steps at loose tolerances a spike may hide.
 
-        Times t (N,), s, loads (N, W), N, and the hull's vertical acceleration (N,), m/s².
+        Times t (N,), s, loads (N, W), N, and the hull's vertical acceleration (N,), m/s². found_to: the share to which
+        peaks are found; what a sample shows beyond them has to be more.
         """
         found = {}
         for name, samples in (("load", load), ("acceleration", np.abs(acceleration))):
             at = np.asarray(samples.argmax(axis=0))
             top = np.take_along_axis(samples, at[None], axis=0)[0]
-            more = top > getattr(self, name) * (1.0 + FOUND)
+            more = top > getattr(self, name) * (1.0 + found_to)
             found[name] = np.where(more, top, getattr(self, name))
             found[f"{name}_time"] = np.where(more, t[at], getattr(self, f"{name}_time"))
         return replace(self, **found)

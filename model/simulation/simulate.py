@@ -100,6 +100,7 @@ def _run(
 ) -> M:
     from model.road.road import SPARE, build_road
     from model.simulation import relief
+    from model.simulation.extremes import FOUND
     from model.simulation.integrate import Integration, Status
 
     warm_up(config.simulation.integrator)
@@ -130,7 +131,7 @@ def _run(
     motion = kind(
         t=t,
         **{name: values for name, values in arrays.items() if name in wanted},
-        tracked=run.peaks().beside(t, arrays["normal_load"], arrays["a"][:, 0, 1]) if n else run.peaks(),
+        tracked=run.peaks().beside(t, arrays["normal_load"], arrays["a"][:, 0, 1], FOUND) if n else run.peaks(),
         static_load=static_load,
         config=config,
         status=status,

@@ -90,7 +90,7 @@ def test_a_sample_that_shows_more_than_was_found_counts():
     run = simulate(PAPER.replace({"simulation.duration": 1}))
     load, swing = run.normal_load.copy(), run.a[:, 0, 1]
     load[40, 2] = 1e6
-    beside = run.peaks.beside(run.t, load, swing)
+    beside = run.peaks.beside(run.t, load, swing, 0.01)
     assert (beside.load[2], beside.load_time[2]) == (1e6, run.t[40])
     assert beside.load[[0, 1, 3]].tolist() == run.peaks.load[[0, 1, 3]].tolist()
     assert beside.acceleration == run.peaks.acceleration
