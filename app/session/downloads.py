@@ -1,6 +1,6 @@
 """Downloads of one tab: files made of what is shown, one after the other, in jobs beside the runs.
 
-There are two queues, so that what the browser has to draw (pictures, films), which can take minutes, holds up nothing
+There are two queues, so that what the browser has to draw (pictures, movies), which can take minutes, holds up nothing
 that the server makes alone.
 """
 
@@ -143,18 +143,21 @@ class Downloads:
 
     def send(self, what: str, download: Download) -> None:
         """Make a file, once those before it are made, and let the browser download it."""
-        export = self._exports[what]
         if what in download.refusal:
             self._window.say("Nothing was downloaded", download.refusal[what])
-        elif sum(len(queue.jobs) for queue in self._queues) >= MOST:
-            self._window.say("Enough for now", f"{MOST} files are being made. Cancel some, or wait a moment.")
         else:
-            export.queue.add(Job(export.title, partial(self._deliver, partial(export.make, download))))
+            title, queue, make = self._exports[what]
+            self._add(queue, title, partial(make, download))
 
     def send_project(self, name: str, project: Project) -> None:
         """Let the browser download a project."""
-        _, made = self._queues
-        made.add(Job("Project", partial(self._deliver, lambda job: (name, project_text(project).encode()))))
+        self._add(self._queues[1], "Project", lambda job: (name, project_text(project).encode()))
+
+    def _add(self, queue: JobQueue, title: str, make: Callable[[Job], tuple[str, bytes]]) -> None:
+        if sum(len(queue.jobs) for queue in self._queues) >= MOST:
+            self._window.say("Enough for now", f"{MOST} files are being made. Cancel some, or wait a moment.")
+        else:
+            queue.add(Job(title, partial(self._deliver, make)))
 
     def cancel(self, number: int) -> None:
         """Make the file of this job no more."""

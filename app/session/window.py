@@ -94,13 +94,14 @@ class Window:
         self._run: Trajectory | None = None
         self._baseline: Trajectory | None = None
         self._beside: tuple[Beside, ...] = ()
+        self._viewed_beside = self._beside  # those that the 3-D view shows
         self._drive: DriveState | None = None  # the newest state of the drive that is shown
         self._drawn: tuple[int, float] | None = None  # run and time that the 3-D view shows
         self._to_view: Trajectory | None = None  # a run that the 3-D view does not have yet
         self._stands_at = monotonic() + LAID_OUT_WITHIN  # when the panels of the page are laid out, s
         self._filled = False  # the page also has what is not seen at first
         self._mode: ModeShow | None = None  # shown in the place of the run
-        self._held = False  # the 3-D view shows what a picture or a film is made of
+        self._held = False  # the 3-D view shows what a picture or a movie is made of
         self._ghost_hidden = False  # the baseline's vehicle is of another size
         self._run_number = 0
         self._standpoint = ""  # from which the user last chose to look
@@ -222,7 +223,9 @@ class Window:
         return self._beside
 
     def _view_beside(self, beside: tuple[Beside, ...]) -> None:
-        self.view.show_beside([(other.run, other.colour) for other in beside])
+        if beside != self._viewed_beside:
+            self._viewed_beside = beside
+            self.view.show_beside([(other.run, other.colour) for other in beside])
 
     def _mind_the_ghost(self) -> None:
         """Say once why the baseline's vehicle is not seen."""
@@ -235,7 +238,7 @@ class Window:
         mode, run = self._plots.spectrum.chosen, self._run
         if self._held:
             self._plots.spectrum.choose_run()
-            self.say("One moment", "A picture or a film is being made of the run. Show the mode when it is done.")
+            self.say("One moment", "A picture or a movie is being made of the run. Show the mode when it is done.")
             return
         if mode is None or run is None or self._drive is not None or not len(run.t):
             self._end_mode()
@@ -263,7 +266,7 @@ class Window:
             self.view.show_ghost(self._baseline)
             self._plots.spectrum.choose_run()
 
-    # ── Pictures and films ──
+    # ── Pictures and movies ──
 
     def hold_view(self, shown: InView, time: float) -> None:
         """Have the 3-D view show this, at a time, s, until `release_view`, whatever the page shows meanwhile."""
@@ -274,8 +277,7 @@ class Window:
         else:
             self.view.show_live(shown.run, shown.road)
         self.view.show_ghost(shown.baseline)
-        if shown.beside != self._beside:
-            self._view_beside(shown.beside)
+        self._view_beside(shown.beside)
         self.view.draw(time)
 
     def film(self, time: float) -> None:

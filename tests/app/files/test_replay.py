@@ -21,8 +21,8 @@ def test_a_long_run_is_cut_and_says_so(monkeypatch):
     assert "<title>Long (the first 0.2 s of 2 s)</title>" in page
 
 
-def key(run, **baseline) -> str:
-    page = replay_html(run, baseline.get("run"), "One", baseline_title=baseline.get("title", ""))
+def key(run, baseline=None, title="") -> str:
+    page = replay_html(run, baseline, "One", baseline_title=title)
     assert page is not None
     return page.rpartition('class="trackride-key"')[2].partition("<script>")[0]
 
@@ -35,9 +35,9 @@ def test_a_key_says_what_the_colours_mean(monkeypatch):
     assert "in the air" not in key(run)
     flying = replace(run, normal_load=np.where(run.t[:, None] > 1, 0.0, run.normal_load))
     assert "Wheel in the air" in key(flying)
-    assert "Baseline: Half &amp; half" in key(run, run=run, title="Half & half")
+    assert "Baseline: Half &amp; half" in key(run, run, "Half & half")
     small = make_run(load_config("robot"))
-    assert "Baseline" not in key(run, run=small, title="Robot")  # of another size: it is not drawn
+    assert "Baseline" not in key(run, small, "Robot")  # of another size: it is not drawn
 
 
 def test_it_can_be_stopped_and_leaves_nothing_behind(capsys):
