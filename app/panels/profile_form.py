@@ -27,9 +27,12 @@ class ProfileForm:
         source, likely = question.source, question.reading
         self._columns = dict(zip(source.labels[:LISTED], source.columns[:LISTED], strict=True))  # label -> name
         labels = {name: label for label, name in self._columns.items()}
-        why = f"{question.why}. What is chosen here is likely." if question.why else ""
+        why = question.why.partition("; ")[0]  # what comes then is advice for those who write files
+        why = f"{why[:1].upper()}{why[1:]}. What is chosen below is likely: change what is wrong." if why else ""
         with gui.add_modal(f"How to read {question.name[:60]}") as self._modal:
-            gui.add_html(str(joined((element("p", why, class_="trackride-why"), style(asset("modal.css"))))))
+            # The window gives the keys to these words: a box for choice would open its list at once
+            words = element("p", why, class_="trackride-why", tabindex="-1", data_autofocus="")
+            gui.add_html(str(joined((words, style(asset("modal.css"))))))
             self._chosen: list[Any] = []
             self._units: list[Any] = []
             names = likely.columns if source.x_is_column else (None, *likely.columns)

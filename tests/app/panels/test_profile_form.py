@@ -39,7 +39,9 @@ def test_a_file_that_is_not_clear_is_asked_about_and_used_as_chosen(explore: Any
     rows = "\n".join(f"{0.5 * k},{40 * (k % 2)},{20 * (k % 3)}" for k in range(60))
     upload(tab, "Open a profile", "<b>tracks.csv", f"x [m],left,<i>right\n{rows}\n".encode())
     wait_for(lambda: "trackride-preview" in html(tab, "trackride-road trackride-preview"), "the picture")
-    assert "which columns are x and height?" in html(tab, "trackride-why")
+    assert "Which columns are x and height? There are 3: x [m], left, &lt;i&gt;right. What" in html(
+        tab, "trackride-why"
+    )
     assert [tab.widget(f"{what} column")["value"] for what in ("Distance", "Height")] == ["x [m]", "left"]
     assert [tab.widget(f"{what} unit")["value"] for what in ("Distance", "Height")] == ["m", "mm"]
     assert "heights 0 to 40 mm" in html(tab, "trackride-road trackride-preview")
