@@ -27,7 +27,7 @@ class ExportLine(NamedTuple):
 
 
 class ExportList:
-    """A panel at the upper left corner of the view; it is there while it has lines."""
+    """A panel at the upper right corner of the view; it is there while it has lines."""
 
     def __init__(self, gui: viser.GuiApi, actions: Actions) -> None:
         self._gui, self._actions = gui, actions
@@ -60,11 +60,11 @@ class ExportList:
             self.place(self._layout)
 
     def place(self, layout: PageLayout) -> None:
-        """Float in the upper left corner of the view."""
+        """Float in the upper right corner of the view: messages come at its left."""
         self._layout = layout
         if self._panel is not None:
             height = HEAD + ROW * min(len(self._rows), MOST_ROWS)
-            self._panel.float(x=GAP, y=GAP, width=int(WIDTH * layout.scale), height=int(height * layout.scale))
+            self._panel.float(x=-GAP, y=GAP, width=int(WIDTH * layout.scale), height=int(height * layout.scale))
 
     def _row(self, line: ExportLine) -> viser.GuiButtonGroupHandle:
         with self._tab:

@@ -21,8 +21,10 @@ from app.plots.curves import Curve, Peak, Plot
 from model.dynamics.vehicle import System
 
 rcParams["svg.fonttype"] = "none"
-FONT = "font-family: 'DejaVu Sans'"  # of formulas, as matplotlib writes it
-FALLBACK = f"{FONT}, Verdana, sans-serif"  # nearly as wide, where there is no DejaVu Sans
+FONT = (
+    """font-family: 'DejaVu Sans'\""""  # of formulas, as matplotlib writes it; other texts have fonts to fall back on
+)
+FALLBACK = """font-family: 'DejaVu Sans', Verdana, sans-serif\""""  # Verdana is nearly as wide
 DPI = 200  # of a PNG
 WIDTH, HEIGHT = 9.6, 2.6  # inches, of a plot on a page
 LEFT, RIGHT, ABOVE, BELOW = 0.5, 0.12, 0.32, 0.5  # inches around a plot, for its numbers and names
