@@ -51,7 +51,7 @@ def optimise(
     """
     base = configuration(config, changes)
     ranges = only_ranges(parsed(over, "--over", base))
-    goals = tuple(goal for name in minimise if name.strip() for goal in chosen_figures(name, base, "--minimise"))
+    goals = tuple(goal for name in minimise if name.strip() for goal in chosen_figures([name], base, "--minimise"))
     if len(goals) not in (1, 2) or len(set(goals)) < len(goals):
         fail("give --minimise FIGURE once, or twice for the front of two figures")
     from app.reports.studies.optimum import files, table

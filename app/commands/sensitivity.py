@@ -24,7 +24,10 @@ def sensitivity(
     config: ConfigArgument = "paper",
     changes: SetOption = None,
     over: OverOption = [],  # noqa: B006 (typer copies it)
-    figures: Annotated[str, typer.Option(help="Names of figures, with commas between.")] = "absorbed_power,peak_load",
+    figures: Annotated[
+        list[str],
+        typer.Option("--figures", metavar="NAMES", help="Names of figures, with commas between, or once for each."),
+    ] = ["absorbed_power,peak_load"],  # noqa: B006
     trajectories: Annotated[int, typer.Option(min=2, max=1000, help="Of Morris's screening.")] = 10,
     samples: Annotated[int, typer.Option(min=2, help="Of Sobol's indices, a power of 2; times keys + 2 runs.")] = 64,
     seed: SeedOption = 0,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 import shutil
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import closing
 from importlib.metadata import version
 from pathlib import Path
@@ -47,8 +47,13 @@ VaryOption = Annotated[
     ),
 ]
 FiguresOption = Annotated[
-    str,
-    typer.Option(help="Names of figures, with commas between; peak_load.R1: of a wheel. Left out: all, of all wheels."),
+    list[str],
+    typer.Option(
+        "--figures",
+        metavar="NAMES",
+        help="Names of figures, with commas between, or once for each; peak_load.R1: of a wheel. Left out: all, of all "
+        "wheels.",
+    ),
 ]
 SeedOption = Annotated[int, typer.Option(min=0, help="Of the sample: the same seed gives the same runs.")]
 
@@ -59,7 +64,7 @@ def sweep(
     vary: VaryOption = [],  # noqa: B006 (typer copies it)
     sample: Annotated[str, typer.Option(help="grid, latin-hypercube:N or sobol:N.")] = "grid",
     seed: SeedOption = 0,
-    figures: FiguresOption = "",
+    figures: FiguresOption = [],  # noqa: B006
     out: Annotated[Path, typer.Option(help="Where to write the table: a name ending in .parquet or .csv.")] = Path(
         "study.parquet"
     ),
@@ -136,12 +141,12 @@ def parsed(texts: list[str], option: str, base: Config) -> list[Varied]:
     return found
 
 
-def chosen_figures(text: str, base: Config, option: str = "--figures") -> tuple[str, ...]:
+def chosen_figures(texts: Iterable[str], base: Config, option: str = "--figures") -> tuple[str, ...]:
     """Names with commas between; leaves when one is unknown."""
     from model.study.design import DesignError, checked_figures
 
     try:
-        return checked_figures([name for name in text.split(",") if name.strip()], base)
+        return checked_figures([name for text in texts for name in text.split(",") if name.strip()], base)
     except DesignError as error:
         fail(f"{option} {error}")
 

@@ -26,8 +26,9 @@ class BackgroundJob:
         if self.busy:
             return False
         self._stop.clear()
-        self._thread = threading.Thread(target=self._do, args=(job,), name="trackride-job", daemon=True)
-        self._thread.start()
+        thread = threading.Thread(target=self._do, args=(job,), name="trackride-job", daemon=True)
+        thread.start()
+        self._thread = thread  # not before: a tab may be closed, on another thread, at any moment
         return True
 
     def stop(self) -> None:

@@ -20,11 +20,12 @@ from model.dynamics.kernel_contact import load_of
 from model.dynamics.lanes import HEAD, LANES, SCRATCH_SIZE, STATE_SIZE, C, W, Y, blocks, rows, state_size
 from model.dynamics.vehicle import System
 from model.simulation.dense import CUBIC, SPARE, Memory, entry_within, state_within
+from model.simulation.peaks import FOUND
 
 PITCH, RISING = 2, 4  # entries of the flat state: θ and ẏ of the chassis
 LOOKS = 3  # into a step in which a wheel lands or lifts off
-SEARCHES = 8  # for a peak, at most …
-FOUND = 0.002  # … until one looks no further than this share of it above the one before
+LAST_LOOKS = 8  # parts of the last step, between which is looked
+SEARCHES = 8  # for a peak, at most: until one look is FOUND, as a share, or less above the one before
 BEFORE, HERE, NEXT = range(3)  # the start of the step before, the start and the end of this step
 OF_WHEELS = (
     *("before", "here", "next"),  # loads at these, N
@@ -188,6 +189,20 @@ def _take_in(more, passed, crossed, swung, dense, last, lanes, road, work, memor
         _seek_loads(dense, last, lanes, road, work, memory, extremes, t, h)
     if swung:
         _seek(-1, dense, last, lanes, road, work, memory, extremes, t, h)
+
+
+@compiled
+def conclude(lanes, road, work, memory, extremes, t):
+    """Look into the last step, which ended at t in memory.y: no step after it tells whether a peak passed."""
+    earlier, start = extremes.earlier, extremes.start[0]
+    for i in range(len(memory.y)):
+        earlier.y_new[i], earlier.k[1, i] = memory.y[i], memory.k[0, i]
+    for look in range(1, LAST_LOOKS):
+        share = look / LAST_LOOKS
+        at = start + share * (t - start)
+        state_within(CUBIC, 1, t - start, share, earlier)
+        rates(lanes, road, at, earlier.between, memory.k[SPARE], work)
+        note(lanes, work, earlier.between, memory.k[SPARE, RISING], extremes, at)
 
 
 @compiled

@@ -17,7 +17,7 @@ from model.dynamics.vehicle import System
 from model.road.nearest_point import RoadTable
 from model.simulation.accuracy import APART_ALLOWED, advice, joints_apart
 from model.simulation.dense import STAGES, Memory
-from model.simulation.extremes import RISING, Extremes, begin, forget, make_extremes, note, of_arms, of_wheels
+from model.simulation.extremes import RISING, Extremes, begin, conclude, forget, make_extremes, note, of_arms, of_wheels
 from model.simulation.flanks import make_flanks
 from model.simulation.peaks import Peaks
 from model.simulation.steppers import (
@@ -233,6 +233,8 @@ class Integration:
             runge_kutta_4(*problem, *kept, span)
         else:
             self._advance_scipy(t_stop, should_stop)
+        if self.status is Status.COMPLETE and self.integrator not in SCIPY_METHODS:
+            conclude(self.lanes, self.road, self._work, self._memory, self._extremes, self.t)
         if self.status in REASON and self.samples_done == 0 and np.isfinite(self.y).all():
             # The good part of a run has its start at least.
             record(self.lanes, self.road, 0.0, self.y, self._memory.k[0], self._work, self.samples, 0)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
 from model.dynamics.ground import depth
 from model.dynamics.vehicle import System
+
+FOUND = 0.002  # share of a peak to which it is sought
 
 
 @dataclass(frozen=True)
@@ -38,6 +40,20 @@ class Peaks:
             for key in (name, f"{name}_time"):
                 largest[key] = np.take_along_axis(found[key], best[None], axis=0)[0]
         return Peaks(**largest)
+
+    def beside(self, t: np.ndarray, load: np.ndarray, acceleration: np.ndarray) -> Peaks:
+        """Where a sample shows more than was found, that: in long steps at loose tolerances a spike may hide.
+
+        Times t (N,), s, loads (N, W), N, and the hull's vertical acceleration (N,), m/s².
+        """
+        found = {}
+        for name, samples in (("load", load), ("acceleration", np.abs(acceleration))):
+            at = np.asarray(samples.argmax(axis=0))
+            top = np.take_along_axis(samples, at[None], axis=0)[0]
+            more = top > getattr(self, name) * (1.0 + FOUND)
+            found[name] = np.where(more, top, getattr(self, name))
+            found[f"{name}_time"] = np.where(more, t[at], getattr(self, f"{name}_time"))
+        return replace(self, **found)
 
     def since(self, start: float, sampled: Peaks) -> Peaks:
         """Of the motion from `start`, s, on: what was largest before gives way to what the samples since then say."""

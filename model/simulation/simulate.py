@@ -126,10 +126,11 @@ def _run(
     if run.status in (Status.TOO_MANY_STEPS, Status.STEP_TOO_SMALL):
         to_try = relief.advice(config, run) or to_try
     n, wanted = run.samples_done, {field.name for field in fields(kind)}
+    t, arrays = np.arange(n) / settings.output_rate, sampled_arrays(run.samples, n)
     motion = kind(
-        t=np.arange(n) / settings.output_rate,
-        **{name: values for name, values in sampled_arrays(run.samples, n).items() if name in wanted},
-        tracked=run.peaks(),
+        t=t,
+        **{name: values for name, values in arrays.items() if name in wanted},
+        tracked=run.peaks().beside(t, arrays["normal_load"], arrays["a"][:, 0, 1]) if n else run.peaks(),
         static_load=static_load,
         config=config,
         status=status,

@@ -49,9 +49,15 @@ def check_run(number: int) -> tuple[str, str]:
     if took > PATIENCE + HEEDED:
         return "", f"was to be stopped after {PATIENCE:g} s and took {took:.1f} s"
     kind = KINDS[number % len(KINDS)]
-    ending = "complete" if run.complete else run.status.rpartition(": ")[2].split(" ", 2)[:2]
     fault = _fault(run) or (_second_look(run) if number % CLOSER == 0 and run.complete else "")
-    return f"{kind}: {ending if isinstance(ending, str) else ' '.join(ending)}", fault
+    return f"{kind}: {_ending(run.status)}", fault
+
+
+def _ending(status: str) -> str:
+    """A run's status without its numbers."""
+    if status.startswith("inaccurate"):
+        return "joints apart" if " at t" in status else "energy missing"
+    return " ".join(status.rpartition(": ")[2].split(" ", 2)[:2])
 
 
 def _fault(run: Trajectory) -> str:
@@ -66,7 +72,8 @@ def _fault(run: Trajectory) -> str:
         drift, energy = float(run.constraint_residual.max()), run.energy_error or 0.0
         if drift > DRIFT or energy > ENERGY:
             return f"is called complete: joints {1e3 * drift:.3g} mm apart, energy {100 * energy:.3g} % off"
-        if (run.peaks.load < run.normal_load.max(axis=0) * (1 - PEAKS)).any():
+        swing = np.abs(run.a[:, run.system.chassis, 1]).max() * (1 - PEAKS)
+        if (run.peaks.load < run.normal_load.max(axis=0) * (1 - PEAKS)).any() or run.peaks.acceleration < swing:
             return "a peak is lower than a sample"
     elif run.status != "cancelled" and not run.advice:
         return f"no advice: {run.status}"

@@ -54,10 +54,10 @@ def whole(tmp_path_factory):
 
 
 def test_a_table_tells_what_made_it(tmp_path):
-    status, told, said = done(*SHORT, "--keep-runs", "runs", folder=tmp_path)
+    status, told, said = done(*SHORT, "--figures", "pitch", "--keep-runs", "runs", folder=tmp_path)
     assert (status, told, said) == (0, "5 of 5 runs are in table.parquet.\n", "")
     table = read_table(tmp_path / "table.parquet")
-    assert table.column_names == ["run", "drive.speed_kmh", "status", "shock", "peak_load.R2"]
+    assert table.column_names == ["run", "drive.speed_kmh", "status", "shock", "peak_load.R2", "pitch"]
     assert table["drive.speed_kmh"].to_pylist() == [10, 15, 20, 25, 30]
     assert b"trackride sweep --vary drive.speed_kmh=10:30:5" in table.schema.metadata[KEY]
     run = Trajectory.load(tmp_path / "runs" / "run-000003.npz")

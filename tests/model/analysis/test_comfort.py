@@ -22,7 +22,7 @@ from model.analysis.comfort import (
     running_rms,
 )
 from model.analysis.signals import point_acceleration, seat, window
-from tests.model.analysis.test_ride import standing
+from tests.model.analysis.support import standing
 from tests.model.support import FLAT, PAPER
 
 # ISO 2631-1, table 3: gains × 1000 at the exact frequencies of third-octave bands, by their numbers (10 lg f).

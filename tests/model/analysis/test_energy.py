@@ -10,7 +10,7 @@ import pytest
 from model import simulate
 from model.analysis.energy import energy_balance, load_balance
 from model.simulation.trajectory import Trajectory
-from tests.model.analysis.test_ride import standing
+from tests.model.analysis.support import standing
 from tests.model.support import FLAT, OPTIONS, PAPER
 
 JUMPY = {"half round": 0.2, "bridging": 0.15}  # %, where the contact point jumps: limited by the output rate

@@ -9,7 +9,7 @@ from model import load_config, simulate
 from model.analysis.figures import AIR_TIME, DRIFT, ENERGY_ERROR, FIGURES, Row, comparison, figures_by_name, overall
 from model.analysis.ride import Summary, imaginary_share, lift_offs
 from model.simulation.trajectory import Trajectory
-from tests.model.analysis.test_ride import FLAT, RATE, standing
+from tests.model.analysis.support import FLAT, RATE, standing
 
 
 def test_every_figure_has_a_name_a_label_and_a_meaning_of_its_own():

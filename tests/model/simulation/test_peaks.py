@@ -86,6 +86,16 @@ def test_parts_make_a_whole():
         np.testing.assert_allclose(getattr(joined, field.name), getattr(whole, field.name), atol=0.011)
 
 
+def test_a_sample_that_shows_more_than_was_found_counts():
+    run = simulate(PAPER.replace({"simulation.duration": 1}))
+    load, swing = run.normal_load.copy(), run.a[:, 0, 1]
+    load[40, 2] = 1e6
+    beside = run.peaks.beside(run.t, load, swing)
+    assert (beside.load[2], beside.load_time[2]) == (1e6, run.t[40])
+    assert beside.load[[0, 1, 3]].tolist() == run.peaks.load[[0, 1, 3]].tolist()
+    assert beside.acceleration == run.peaks.acceleration
+
+
 def energy_errors(changes: dict[str, object]) -> Trajectory:
     return simulate(load_config("half_round").replace(changes))
 
