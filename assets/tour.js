@@ -6,9 +6,10 @@ if (!window.trackrideTour) {
   const shown = (part) => part?.getClientRects().length > 0;
   const tab = (name) => all('[role="tab"]').filter((one) => one.textContent === name);
   const folder = (name) => all(`${PANEL} [data-trackride-folder] > [role="button"]`).filter((one) => one.textContent === name);
-  const sliders = () => all(`${PANEL} .mantine-Slider-root`)
-    .filter((one) => !one.closest('[data-trackride-folder]')).map((one) => one.closest('.mantine-Flex-root') ?? one);
-  // What each step points at: lists of parts, each list with a frame of its own; the card stands beside the first
+  const sliders = () => all(`${PANEL} .mantine-Slider-root`).filter((one) => !one.closest('[data-trackride-folder]'))
+    .flatMap((one) => [one.parentElement, ...all(`${PANEL} label[for="${one.id}"]`)]);
+  // What each step points at: lists of parts, each list with a frame of its own; the card stands beside the first,
+  // or below it
   const STEPS = [
     {
       title: 'Drag a slider',
@@ -31,6 +32,7 @@ if (!window.trackrideTour) {
       text: 'The thin curve on a slider shows one figure over its range, before you move it. The tab Study draws this for '
         + 'more parameters and figures.',
       at: () => [tab('Study'), sliders()],
+      below: true,
     },
     {
       title: 'Compare, and pass it on',
@@ -76,6 +78,7 @@ if (!window.trackrideTour) {
         [box.right + GAP, middle, box.right + GAP + wide < innerWidth], [box.left - GAP - wide, middle, box.left - GAP > wide],
         [centre, box.bottom + GAP, box.bottom + GAP + high < innerHeight], [centre, box.top - GAP - high, box.top - GAP > high],
       ];
+      if (STEPS[step].below) spots.unshift(spots[2]);
       [x, y] = spots.find(([, , fits]) => fits) ?? [centre, box.top + 3 * GAP];
     }
     card.style.left = `${Math.min(Math.max(x, GAP), innerWidth - wide - GAP)}px`;
@@ -158,7 +161,8 @@ if (!window.trackrideTour) {
     const view = around(all('[data-trackride="view"]')) ?? {left: 0, right: innerWidth, top: 0};
     example.style.maxWidth = `${Math.max(view.right - view.left - 2 * GAP, 240)}px`;
     example.style.left = `${Math.max((view.left + view.right - example.offsetWidth) / 2, GAP)}px`;
-    example.style.top = `${view.top + GAP}px`;
+    const notices = around(all('.mantine-Notification-root'));  // the card stands below them
+    example.style.top = `${Math.max(view.top, notices ? notices.bottom : 0) + GAP}px`;
   };
   setInterval(() => example && placeExample(), 200);
   customElements.define('trackride-example', class extends HTMLElement {

@@ -1,7 +1,8 @@
 """`make film`: the film at the README's top, taken in a real browser.
 
 Without graphics hardware a page takes longer to draw than a frame of the film lasts. So the mouse and the run go on by
-one frame at a time, and each frame is taken once the page shows the run that belongs to it.
+one frame at a time, and each frame is taken once the page shows the run that belongs to it; in between it draws nothing
+in 3-D, which would hold up the curves.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from typing import NamedTuple
 from PIL import Image, ImageDraw
 from playwright.sync_api import ViewportSize
 
-from tests.browser.driver import Explorer, chromium, running_explorer
+from tests.browser.driver import DRAWING, Explorer, chromium, running_explorer
 from tests.browser.pictures import PICTURES
 
 SIZE: ViewportSize = {"width": 1280, "height": 720}
@@ -22,8 +23,9 @@ WIDTH, HEIGHT = 960, 540  # px, of the film
 RATE = 10  # frames/s
 START = 0.5  # s of the run
 COLOURS = 96
-FADE = 0.25  # s in which a page draws what it has got
+SETTLES = 0.2  # s in which a page takes in a run and its time
 ARROW = (0, 0), (0, 17), (4, 13.5), (6.6, 19.5), (9.2, 18.3), (6.6, 12.6), (12, 12.2)  # px
+TWO_FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
 SHOW_TIME = "([time, k]) => trackrideTell('at', JSON.stringify([time, k]))"  # as a click in a plot does
 THUMB = """thumb => {
   const box = thumb.getBoundingClientRect(), track = thumb.parentElement.getBoundingClientRect();
@@ -91,8 +93,11 @@ class Camera:
         self._page.mouse.move(*at)
         number = next(self._numbers)
         self._page.evaluate(SHOW_TIME, [START + number / RATE, number])
-        self._page.wait_for_timeout(1000 * FADE)
-        frame = Image.open(io.BytesIO(self._page.screenshot())).convert("RGB")
+        self._page.wait_for_timeout(1000 * SETTLES)
+        with self._explorer.drawing():
+            self._page.evaluate(TWO_FRAMES)
+            picture = self._page.screenshot()
+        frame = Image.open(io.BytesIO(picture)).convert("RGB")
         arrow = [(at[0] + x, at[1] + y) for x, y in ARROW]
         ImageDraw.Draw(frame).polygon(arrow, fill="#111", outline="#fff", width=1)
         self._frames.append(frame.resize((WIDTH, HEIGHT), Image.Resampling.LANCZOS))
@@ -112,9 +117,10 @@ class Camera:
 
 def main() -> None:
     with running_explorer() as address, chromium() as browser:
-        explorer = Explorer(browser.new_page(viewport=SIZE)).open(address)
+        page = browser.new_page(viewport=SIZE)
+        page.add_init_script(DRAWING)
+        explorer = Explorer(page).open(address)
         explorer.come_to_rest()
-        explorer.page.wait_for_timeout(3000)
         camera = Camera(explorer)
         for leg in LEGS:
             camera.follow(leg)
