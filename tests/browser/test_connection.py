@@ -47,23 +47,6 @@ def test_a_page_waits_for_its_server_and_comes_back_as_it_was(browser: Browser) 
         context.close()
 
 
-def test_each_tab_is_loaded_anew_with_its_own_parameters(browser: Browser, address: str) -> None:
-    context = new_context(browser)
-    tabs = {speed: Explorer(context.new_page()) for speed in (22, 33)}
-    for speed, explorer in tabs.items():
-        explorer.open(f"{address}/?fixedDpr=0.25")
-        explorer.box("Speed").fill(str(speed))
-        explorer.page.keyboard.press("Enter")
-        explorer.page.wait_for_function(
-            "text => sessionStorage.getItem('trackride')?.includes(text)", arg=f'"drive.speed_kmh": {speed}'
-        )
-    for speed, explorer in tabs.items():
-        explorer.page.reload()
-        expect(explorer.status).to_contain_text("real time")
-        explorer.wait_for_value("Speed", "now === value", speed)
-    context.close()
-
-
 def test_what_a_busy_page_tells_comes_one_at_a_time(at_rest: Explorer) -> None:
     """viser sends only the first and the last of what is set within 50 ms."""
     times = at_rest.page.evaluate(

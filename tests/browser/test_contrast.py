@@ -49,6 +49,6 @@ def test_all_text_stands_out_from_what_is_behind_it(at_rest: Explorer) -> None:
         for tab in TABS:
             page.get_by_role("tab", name=tab, exact=True).click()
             with suppress(PlaywrightTimeoutError):  # colours change in a moment
-                page.wait_for_function(f"least => !({PALE})(least).length", arg=LEAST, timeout=SOON)
+                page.wait_for_function(f"least => !({PALE})(least).length", arg=LEAST, polling=250, timeout=SOON)
             assert page.evaluate(PALE, LEAST) == [], f"{tab}, {look}"
     at_rest.strips.uncheck()

@@ -9,8 +9,9 @@ import numpy as np
 from PIL import Image
 from playwright.sync_api import expect
 
+from app.runs.study_choice import WHAT_IF
 from tests.browser.conftest import OpenTab
-from tests.browser.driver import DOWNLOAD, NEW_CURVES, SOON, Explorer
+from tests.browser.driver import DOWNLOAD, FIRST_RUN, NEW_CURVES, SOON, Explorer
 
 
 def test_a_slider_moved_by_key_makes_a_new_run_whose_loads_stand_in_the_plot(at_rest: Explorer) -> None:
@@ -86,10 +87,13 @@ def test_a_value_out_of_range_is_refused_with_range_and_unit_and_the_run_stays(a
     at_rest.fold("Ground contact")
 
 
-def test_tabs_are_independent(at_rest: Explorer, open_tab: OpenTab) -> None:
+def test_a_new_tab_has_strips_on_its_sliders_and_is_independent_of_others(at_rest: Explorer, open_tab: OpenTab) -> None:
     before, value = at_rest.status.inner_text(), at_rest.value("Speed")
     other = open_tab(color_scheme="dark")
     other.pause()  # so that two pages do not draw at once
+    strips = other.page.locator(".trackride-strip")  # though the tab Study was never in front
+    expect(strips).to_have_count(len(WHAT_IF), timeout=FIRST_RUN)
+    expect(other.page.locator("trackride-matters")).to_contain_text("mostly speed")
     look = "data-mantine-color-scheme"
     expect(other.page.locator("html")).to_have_attribute(look, "dark")
     other.page.emulate_media(color_scheme="light")

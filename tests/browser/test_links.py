@@ -28,7 +28,7 @@ def test_a_link_opens_what_it_says_and_back_leads_to_what_was_before(browser: Br
 def test_the_palette_leads_to_a_parameter_and_a_change_has_its_own_reset(at_rest: Explorer) -> None:
     page = at_rest.page
     page.keyboard.press("Control+k")
-    expect(page.locator(".mantine-Spotlight-search")).to_be_focused()
+    expect(page.locator("input.mantine-Spotlight-search")).to_be_focused()
     page.keyboard.type("Friction")
     expect(page.locator(".mantine-Spotlight-action").first).to_contain_text("Friction")  # the others are gone
     page.keyboard.press("Enter")

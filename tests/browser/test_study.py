@@ -6,10 +6,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Locator, expect
+from playwright.sync_api import Locator, expect
 
 from app.runs.study_choice import WHAT_IF
-from tests.browser.conftest import new_context
 from tests.browser.driver import FIRST_RUN, SOON, Explorer
 
 SPEED = 3  # place of its column
@@ -122,11 +121,3 @@ def test_a_record_is_laid_over_the_run(study: Explorer, tmp_path: Path) -> None:
     file.write_text("no record")
     study.page.locator("trackride-study input[type=file]").set_input_files(file)
     expect(study.page.get_by_text("No record", exact=True)).to_be_visible(timeout=SOON)
-
-
-def test_the_strips_stand_on_the_sliders_before_the_tab_was_ever_opened(browser: Browser, address: str) -> None:
-    context = new_context(browser)
-    explorer = Explorer(context.new_page()).open(f"{address}/?fixedDpr=0.25")
-    expect(explorer.page.locator(".trackride-strip")).to_have_count(len(WHAT_IF), timeout=FIRST_RUN)
-    expect(explorer.page.locator("trackride-matters")).to_contain_text("mostly speed")
-    context.close()
