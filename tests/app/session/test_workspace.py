@@ -542,6 +542,9 @@ def test_all_of_the_page_is_told_in_the_units_of_choice(explore: Any, open_tab: 
     assert wait_for(lambda: tab.html("Speed 9.321 → 20 mph"))
     tab.use("Speeds", "km/h")
     wait_for(lambda: tab.widget("Speed, km/h")["value"] == 32.18688)
+    tab.press("Metric units")
+    wait_for(lambda: [props for props in tab.charts() if props["axes"][1].get("label") == "kN"])
+    assert {tab.widget(choice)["value"] for choice in ("Forces", "Lengths", "Accelerations")} == {"kN", "mm", "m/s²"}
 
 
 def rows(tab: Tab) -> list[str]:
