@@ -50,7 +50,7 @@ class ExportList:
             self._tab = self._panel.add_tab("Exports")
             with self._tab:
                 marked = element("div", class_="trackride-exports")
-                self._gui.add_html(str(joined((marked, style(asset("exports.css"))))))
+                self._gui.add_html(str(joined((marked, style(asset("exports.css"))))), order=0)  # above all lines
         for line in lines:
             if line.number not in self._rows:
                 self._rows[line.number] = self._row(line)

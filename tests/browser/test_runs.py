@@ -229,7 +229,7 @@ def test_exports_wait_for_their_turn_and_one_is_cancelled_without_the_others(at_
         expect(page.get_by_text(re.compile(r"^Movie: (under way|\d+ %)"))).to_be_visible()
         at_rest.button("Screenshot").click()
         expect(page.get_by_text("Screenshot: waits for its turn")).to_be_visible()
-        at_rest.button("CSV").click()
+        page.get_by_role("button", name="CSV", exact=True).click()
     assert table.value.suggested_filename.endswith(".csv")
     with page.expect_download(timeout=DOWNLOAD) as picture:
         page.get_by_role("group", name=re.compile("^Movie:")).get_by_role("button", name="Cancel").click()
