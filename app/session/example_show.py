@@ -173,6 +173,6 @@ def _seen(example: Example, run: Trajectory, before: Trajectory, changes: Change
         figure=unit.label,
         before=text(_figure(example, before)),
         now=text(_figure(example, run)),
-        value=f"{PARAMETER[key].label.lower()} {value_text(units.told(PARAMETER[key]), value)}",
+        value=value_text(units.told(PARAMETER[key]), value),
         count=steps,
     )

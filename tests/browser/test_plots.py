@@ -139,7 +139,7 @@ def test_a_plot_is_read_by_keyboard(at_rest: Explorer) -> None:
     page.get_by_role("button", name="Large").locator("visible=true").first.focus()
     page.keyboard.press("Tab")
     expect(plot).to_be_focused()
-    expect(plot).to_have_accessible_name(re.compile("^Road wheel.*arrow keys move the cursor"))
+    expect(plot).to_have_accessible_name(re.compile("^Normal load of road wheels.*arrow keys move the cursor"))
     expect(told).to_have_text(re.compile(r"^0\.00 s: R1 \d+\.\d+, R2 .* kN$"))
     page.keyboard.press("Shift+ArrowRight")
     expect(told).to_have_text(re.compile(r"^0\.[1-9]\d s: "))

@@ -69,7 +69,7 @@ def test_the_worst_speed_is_the_one_with_the_largest_figure(explore: Any, open_t
     tab: Tab = open_tab(explorer)
     wait_for(lambda: tab.shows_run(1))
     ask(tab, "example", "Find the worst speed")
-    assert "Of 18 speeds, speed 70 km/h loads a wheel most. Peak load: " in wait_for(lambda: card(tab), "its end")
+    assert "Of 18 speeds, 70 km/h loads a wheel most. Peak load: " in wait_for(lambda: card(tab), "its end")
     assert explorer.sessions[0].shown.config == PAPER.replace({"drive.speed_kmh": 70})
     assert opened(tab) == "Study"
 
