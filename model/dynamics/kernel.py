@@ -273,7 +273,7 @@ def rates(lanes, road, t, y, dy, work):
     total = contact_forces(lanes, road, y, dy, work)
 
     # The drive (section 2.2): a force F by speed, as torques on the wheels in proportion to their loads
-    F, int_e_dot, turning, tau_c = 0.0, 0.0, 0.0, 0.0
+    F, e, int_e_dot, turning, tau_c = 0.0, 0.0, 0.0, 0.0, 0.0
     if not lanes.prescribed:
         e = lanes.v_ref - y[SPEED]
         F, int_e_dot = lanes.K_p * e + lanes.K_i * y[INT_E], e
@@ -316,6 +316,8 @@ def rates(lanes, road, t, y, dy, work):
 
     dy[0], dy[1], dy[2] = y[3], y[4], y[5]
     dy[3], dy[4], dy[5] = a_x, a_y, alpha
+    if work.held[0] != 0.0:  # as fast as the demand stays at the limit, between standing still and running freely
+        int_e_dot = work.held[0] * min(max(work.held[0] * lanes.K_p * a_x / lanes.K_i, 0.0), work.held[0] * e)
     dy[INT_E] = int_e_dot
     power += tau_c * c.omega
     if lanes.prescribed:

@@ -95,11 +95,12 @@ class Work(NamedTuple):
 
     blocks: np.ndarray  # SCRATCH's rows of each block
     F: np.ndarray  # (1,) drive force, N
+    held: np.ndarray  # (1,) ±1 while the drive is held at that limit (steppers.py), else 0
 
 
 def make_work(system: System) -> Work:
     """Scratch space for a system."""
-    return Work(np.zeros(blocks(system.n) * SCRATCH_SIZE), np.zeros(1))
+    return Work(np.zeros(blocks(system.n) * SCRATCH_SIZE), np.zeros(1), np.zeros(1))
 
 
 def blocks(n: int) -> int:

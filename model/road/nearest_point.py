@@ -62,6 +62,17 @@ class RoadTable(NamedTuple):
         ends = self.period == 0.0 and last < len(self.first_cell)
         return start, self.bin_start + last / self.bins_per_metre if ends else np.inf
 
+    @property
+    def steepness(self) -> float:
+        """Root of the mean square slope from node to node, where there are valleys; 0 where there are none."""
+        start, end = self.valleys
+        if start >= end:
+            return 0.0
+        x, h = self.cell[:, NODE], self.cell[:, HEIGHT]
+        inside = (x >= start) & (x <= end)
+        way, rise = np.diff(x[inside]), np.diff(h[inside])
+        return float(np.sqrt(np.sum(rise**2 / way) / np.sum(way))) if len(way) else 0.0
+
 
 @inlined
 def quintic(c0, c1, c2, c3, c4, c5, u):

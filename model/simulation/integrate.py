@@ -21,6 +21,8 @@ from model.simulation.extremes import RISING, Extremes, begin, conclude, forget,
 from model.simulation.flanks import make_flanks
 from model.simulation.peaks import Peaks
 from model.simulation.steppers import (
+    STEEP,
+    STEEP_CARE,
     STEPS_PER_SECOND,
     Samples,
     Span,
@@ -115,7 +117,7 @@ class Integration:
         self._solver: OdeSolver | None = None
         self._should_stop: Callable[[], bool] | None = None
         self._looked = 0.0  # s of wall time, when should_stop was asked
-        self._stiffness = self._stiffest_rate()
+        self._stiffness, self._steep = self._stiffest_rate(), _steep(road)
 
     @property
     def y(self) -> np.ndarray:
@@ -172,8 +174,8 @@ class Integration:
         self.system, self.lanes, self.road = system, in_lanes(system), road
         if y is not None:
             self.y[:] = y
-        self._stiffness = self._stiffest_rate()
-        self._clock.fresh, self._solver = 0, None
+        self._stiffness, self._steep = self._stiffest_rate(), _steep(road)
+        self._clock.fresh, self._solver, self._work.held[0] = 0, None, 0.0
 
     def peaks(self) -> Peaks:
         """What was largest since the start, or since `take_samples`."""
@@ -223,7 +225,7 @@ class Integration:
         should_stop: asked where a single step of SciPy's takes longer than that; true ends it where it began.
         """
         t_stop = min(t_stop, self.duration)
-        bounds = self._longest(), self.apart_allowed, *self._valleys()
+        bounds = self._longest(), self.apart_allowed, *self._valleys(), self._steep
         span = Span(float(self.rate), float(self.duration), float(t_stop), *bounds)
         problem = self.lanes, self.road, self._work, self._memory
         kept = self.samples, self._extremes, self._flanks, self._clock
@@ -328,6 +330,11 @@ class Integration:
             clock.status = Status.COMPLETE
         elif clock.steps > self.duration * STEPS_PER_SECOND:
             clock.status = Status.TOO_MANY_STEPS
+
+
+def _steep(road: RoadTable) -> float:
+    """How much smaller errors must be for the road's steepness."""
+    return STEEP_CARE if road.steepness > STEEP else 1.0
 
 
 def _lanes_of_wheels(system: System) -> np.ndarray:

@@ -14,9 +14,9 @@ import numpy as np
 
 from model.compiled import compiled, inlined
 from model.dynamics.kernel import constraint_residual, loads, multipliers, rates
-from model.dynamics.lanes import INT_E, WORK, places, state_size
+from model.dynamics.lanes import INT_E, SPEED, WORK, places, state_size
 from model.dynamics.vehicle import System
-from model.simulation.dense import CUBIC, SPARE, state_within
+from model.simulation.dense import CUBIC, SPARE, entry_within, state_within
 from model.simulation.extremes import begin, follow
 from model.simulation.flanks import NOBODY, before_change, changed, keep, look, release
 
@@ -41,6 +41,9 @@ MOST_CARE = 4.0  # … down to this part
 VALLEYS = 30.0  # m: where valleys go on for longer, errors must be smaller yet
 RESTLESS = 0.9  # m/s: from this on …
 MOST_THERE = 5.0  # … with the third power, down to this part
+STEEP = 0.38  # root of the mean square slope, between those of classes G and H: where such ground is steeper …
+STEEP_CARE = 5.0  # … errors must be smaller by this
+DRIVE = -2  # stands for a wheel that changes flanks: the drive comes to its limit, or off it
 
 
 class Status(IntEnum):
@@ -122,6 +125,7 @@ class Span(NamedTuple):
     apart: float  # m that joints may be apart
     valleys_from: float  # m, of the chassis: from here …
     valleys_to: float  # … to here a wheel may bridge a valley
+    steep: float  # errors must be smaller by this there; 1 where they need not
 
 
 def error_scale(system: System, rtol: float, atol: float) -> np.ndarray:
@@ -176,7 +180,7 @@ def trouble(lanes, y):
 
 
 @inlined
-def care(lanes, y, among_valleys):
+def care(lanes, y, among_valleys, steep):
     """How much smaller errors must be where wheels are thrown about, since what follows magnifies them: 1 on gentle
     roads.
     """
@@ -185,7 +189,7 @@ def care(lanes, y, among_valleys):
         fastest = max(fastest, abs(y[lanes.place[b, 4]]))
     smaller = min(max(fastest / LIVELY, 1.0), MOST_CARE)
     if among_valleys:
-        smaller *= min(max((fastest / RESTLESS) ** 3, 1.0), MOST_THERE)
+        smaller *= steep * min(max((fastest / RESTLESS) ** 3, 1.0), MOST_THERE)
     return smaller
 
 
@@ -332,6 +336,51 @@ def _before_stop(lanes, memory, h):
 
 
 @inlined
+def _limited(lanes, v_x, int_e):
+    """1 or −1 where the drive asks for more force than its limit that way, else 0."""
+    demand = lanes.K_p * (lanes.v_ref - v_x) + lanes.K_i * int_e
+    return 1.0 if demand > lanes.F_max else (-1.0 if demand < -lanes.F_max else 0.0)
+
+
+@inlined
+def _before_limit(dense, last, lanes, memory, h):
+    """How long a step from y to y_new of h s may be so that the drive neither comes to its limit nor off it, s; h where
+    it does not: there the rate of ∫e jumps.
+    """
+    before = _limited(lanes, memory.y[SPEED], memory.y[INT_E])
+    if _limited(lanes, memory.y_new[SPEED], memory.y_new[INT_E]) == before:
+        return h
+    low, high = 0.0, 1.0
+    for _ in range(40):  # bisection on the dense output
+        theta = 0.5 * (low + high)
+        v_x = entry_within(dense, last, h, theta, memory, SPEED)
+        if _limited(lanes, v_x, entry_within(dense, last, h, theta, memory, INT_E)) == before:
+            low = theta
+        else:
+            high = theta
+    return low * h
+
+
+@inlined
+def _holds(lanes, side, y, dy):
+    """Whether the demand would come back to the limit from both sides: with ∫e running freely it would rise above,
+    with ∫e at a stand it would fall below. So it stays there, and the rate of ∫e lies between.
+    """
+    falls = side * lanes.K_p * dy[SPEED]
+    return (falls >= 0.0) & (falls <= side * lanes.K_i * (lanes.v_ref - y[SPEED])) & (lanes.K_i > 0.0)
+
+
+@inlined
+def _hold(lanes, work, memory):
+    """Hold the drive at the limit that it has just come to, or off, if it would chatter there."""
+    y, dy = memory.y, memory.k[0]
+    side = 1.0 if lanes.K_p * (lanes.v_ref - y[SPEED]) + lanes.K_i * y[INT_E] > 0.0 else -1.0
+    if _holds(lanes, side, y, dy):
+        work.held[0] = side
+        dy[INT_E] = lanes.K_p * dy[SPEED] / lanes.K_i
+
+
+@inlined
 def _step_over(lanes, road, work, memory, extremes, flanks, clock):
     """Move on by so short a time that nothing changes but on which side of a stop an arm is, or a wheel's flank."""
     for i in range(len(memory.y)):
@@ -361,7 +410,7 @@ def adaptive(tableau, lanes, road, work, memory, samples, extremes, flanks, cloc
         clock.evaluations += last
         watching = (memory.y[0] > span.valleys_from) & (memory.y[0] < span.valleys_to)
         error = _error_of(tableau.error, h, memory, flanks.over_scale, states)
-        error *= care(lanes, memory.y, watching & many_valleys)
+        error *= care(lanes, memory.y, watching & many_valleys, span.steep)
 
         # At a jump of the forces no step is short enough; one of SMALLEST_STEP is too short to matter
         good = error <= 1.0 or (h <= SMALLEST_STEP and clock.forced < MOST_FORCED and np.isfinite(error))
@@ -376,6 +425,10 @@ def adaptive(tableau, lanes, road, work, memory, samples, extremes, flanks, cloc
             free_of_stops = _before_stop(lanes, memory, h)
             if free_of_stops < free:
                 free, wheel = free_of_stops, NOBODY
+        if good and work.held[0] == 0.0 and not lanes.prescribed:
+            free_of_limit = _before_limit(tableau.dense, last, lanes, memory, h)
+            if free_of_limit < free:
+                free, wheel = free_of_limit, DRIVE
         if free < h and clock.t + OVER < span.end:
             planned = max(planned, h)
             clock.rejected += 1
@@ -383,7 +436,9 @@ def adaptive(tableau, lanes, road, work, memory, samples, extremes, flanks, cloc
                 clock.step = free - 0.5 * OVER
             else:
                 _step_over(lanes, road, work, memory, extremes, flanks, clock)
-                if wheel != NOBODY:
+                if wheel == DRIVE:
+                    _hold(lanes, work, memory)
+                elif wheel != NOBODY:
                     changed(flanks, wheel, clock.t)
                 clock.step, planned = planned, 0.0
         elif good:
@@ -391,6 +446,8 @@ def adaptive(tableau, lanes, road, work, memory, samples, extremes, flanks, cloc
             keep(flanks, watching)
             if flanks.jammed[0] > 0.0:
                 release(flanks, clock.t)
+            if work.held[0] != 0.0 and not _holds(lanes, work.held[0], memory.y_new, memory.k[last]):
+                work.held[0] = 0.0
             t_new = clock.t + h
             follow(tableau.dense, last, lanes, road, work, memory, extremes, clock.t, h)
             _record_step(tableau.dense, last, lanes, road, work, memory, samples, clock, span, t_new)

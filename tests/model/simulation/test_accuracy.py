@@ -15,7 +15,7 @@ from model.simulation.simulate import simulate
 UNHELD = {"simulation.baumgarte_alpha": 0, "simulation.baumgarte_beta": 0}
 LOOSE = {"simulation.rtol": 0.1, "simulation.atol": 0.1}
 COARSE = {"simulation.integrator": "rk4", "simulation.step": 0.007}
-ROUGH = {"road.type": "sine", "road.amplitude": 0.2, "road.wavelength": 1.5, "drive.speed_kmh": 40}
+ROUGH = {"road.type": "random", "road.roughness_class": "E", "drive.speed_kmh": 70}
 
 # Joints that nothing holds, loose tolerances, both, a step at the edge of stability
 INEXACT = {
