@@ -61,7 +61,7 @@ def report_page(
     """
     config, modes = run.config, vehicle_modes(run.config)
     drawings = run_drawings(run, modes, baseline)
-    pictures = []
+    pictures: list[Html] = []
     for drawing in drawings:
         on_progress(len(pictures) / (len(drawings) + 1))
         pictures.append(picture(drawing))
