@@ -143,7 +143,7 @@ def _key(run: Trajectory, baseline_title: str | None, dark: bool) -> str:
         )
         for sign, colour, words in told
     )
-    place = "position: fixed; left: 1.2em; bottom: 1.2em; z-index: 5; pointer-events: none"
+    place = "position: fixed; left: 1.2em; bottom: 4em; z-index: 5; pointer-events: none"
     look = f"{place}; color: {INK[dark]}; {TYPE}"
     return str(element("div", *rows, style=look, class_="trackride-key"))
 

@@ -94,7 +94,7 @@ class Window:
         self._run: Trajectory | None = None
         self._baseline: Trajectory | None = None
         self._beside: tuple[Beside, ...] = ()
-        self._viewed_beside: tuple[Beside, ...] = self._beside  # those that the 3-D view shows
+        self._viewed_beside: tuple[Beside, ...] = ()  # those that the 3-D view shows
         self._drive: DriveState | None = None  # the newest state of the drive that is shown
         self._drawn: tuple[int, float] | None = None  # run and time that the 3-D view shows
         self._to_view: Trajectory | None = None  # a run that the 3-D view does not have yet

@@ -246,7 +246,7 @@ def test_a_project_brings_runs_names_and_baseline_to_another_browser(open_tab: O
     before = one.run_number()
     one.press("Speed", "End")
     one.wait_for_run(after=before)
-    one.control("Name").fill("Fast one")
+    page.get_by_role("textbox", name="Name", exact=True).fill("Fast one")
     page.keyboard.press("Enter")
     page.get_by_role("button", name="Pin", exact=True).click()
     before = one.run_number()
