@@ -54,7 +54,7 @@ class PlaybackPanel:
                 hint="Space plays and pauses; ← and → step by 0.01 s, with Shift by 0.1 s. When a drive pauses, you "
                 "can look back on its last seconds.",
             )
-            speed = gui.add_dropdown(
+            self._speed: Any = gui.add_dropdown(
                 "Time scale",
                 tuple(SPEEDS),
                 initial_value=NORMAL_SPEED,
@@ -63,7 +63,7 @@ class PlaybackPanel:
             )
             gui.add_html(AS_TALL.replace("TIME", self._time._impl.uuid))
         self._time.on_update(by_user(lambda event: actions.scrub(event.target.value), actions.fail))
-        speed.on_update(by_user(lambda event: actions.set_speed(SPEEDS[event.target.value]), actions.fail))
+        self._speed.on_update(by_user(lambda event: actions.set_speed(SPEEDS[event.target.value]), actions.fail))
         acts = {
             START: lambda: actions.scrub(0.0),
             BACK: lambda: actions.step(-1),
@@ -85,6 +85,10 @@ class PlaybackPanel:
         """Show the playback of a run."""
         self._show_mode(False, playback.playing)
         self._show_time(playback)
+
+    def follow(self, speed: float) -> None:
+        """Show a speed, times real time, that the user has not chosen here."""
+        self._speed.value = next(name for name, one in SPEEDS.items() if one == speed)
 
     def show_drive(self, playback: Playback, state: DriveState | None, units: Units = METRIC) -> None:
         """Show how far the drive has come, or where in its past the user is."""

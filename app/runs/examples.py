@@ -33,7 +33,7 @@ class Example:
     tab: str  # that comes to the front at the end
     path: Callable[[Config], Sequence[Changes]]  # from the configuration that is shown
     to_worst: bool = False  # ends at the step of the path where the figure is largest; else at the last one
-    crosses: bool = False  # in the end the run plays from just before its obstacle
+    crosses: bool = False  # in the end the run plays, slowly, from just before its obstacle
 
 
 def _halved(config: Config) -> list[Changes]:
@@ -73,8 +73,8 @@ EXAMPLES = (
     Example(
         "Cross a half-round",
         "This run is now the baseline. The road becomes level ground with a half-round on it.",
-        "One wheel after the other climbs the half-round. A wheel without an arrow is in the air. {figure}: {before} "
-        "before, {now} now.",
+        "In slow motion, one wheel after the other climbs the half-round. A wheel without an arrow is in the air. "
+        "{figure}: {before} before, {now} now.",
         LOAD_PEAK.name,
         "Loads",
         lambda config: [{"road.type": "half_round"}],

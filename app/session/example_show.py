@@ -24,6 +24,7 @@ from model.config.parameters import PARAMETER
 from model.simulation.trajectory import Trajectory
 
 LEAD = 1.5  # s to read what is going to happen
+SLOW = 0.25  # times real time, at which an obstacle is crossed
 PACE = 0.15  # s from one step to the next, at least
 TAKEN_OVER = "You have taken over. “Undo example” leads back to what was shown before it."
 
@@ -33,6 +34,7 @@ class Moment(NamedTuple):
 
     time: float  # s
     playing: bool
+    speed: float  # times real time
 
 
 class _Before(NamedTuple):
@@ -147,7 +149,7 @@ class ExampleShow:
             return  # the run is shown, and the workspace takes note of it soon
         run, before = standing.done.trajectory, self._before.standing.done.trajectory
         if example.crosses:
-            self._go_to(Moment(time_before_obstacle(run), playing=True))
+            self._go_to(Moment(time_before_obstacle(run), playing=True, speed=SLOW))
         self._window.open_tab(example.tab)
         self._end(example, _seen(example, run, before, self._asked, self._steps, self._window.units))
 

@@ -573,7 +573,7 @@ class Session:
 
     def _moment(self) -> Moment:
         with self._lock:
-            return Moment(self._playback.time, self._playback.playing)
+            return Moment(self._playback.time, self._playback.playing, self._playback.speed)
 
     def _stands_at(self) -> float | None:
         """The time of a run that is paused, s; None: it plays, or a drive is shown."""
@@ -583,8 +583,9 @@ class Session:
     def _go_to(self, moment: Moment) -> None:
         with self._lock:
             self._playback.scrub(moment.time)
-            self._playback.playing = moment.playing
+            self._playback.playing, self._playback.speed = moment.playing, moment.speed
             self._pace()
+        self._window.show_speed(moment.speed)
 
     def _study(self, now: float, driving: bool) -> None:
         """Let studies begin or end, as it suits what the user does."""

@@ -394,6 +394,10 @@ class Window:
         if self._controls.road_view.content != view:
             self._controls.road_view.content = view
 
+    def show_speed(self, speed: float) -> None:
+        """The player goes at this speed, times real time, which the user has not chosen there."""
+        self._playback.follow(speed)
+
     # ── Parameters ──
 
     def mark_changes(self, request: Request) -> None:

@@ -84,9 +84,11 @@ def test_an_example_leaves_the_drive_and_the_next_one_undoes_it(explore: Any, op
     wait_for(lambda: "climbs the half-round" in card(tab), "its end")
     session = explorer.sessions[0]
     assert session.shown.config.road.type == "half_round"
+    assert tab.widget("Time scale")["value"] == "1/4×"
     tab.press("Find the worst speed")
     wait_for(lambda: "70 km/h" in card(tab), "the end of the next one")
     assert session.shown.config == PAPER.replace({"drive.speed_kmh": 70})
+    assert tab.widget("Time scale")["value"] == "1×"
 
 
 def test_who_takes_over_ends_it_and_can_still_undo_it(
