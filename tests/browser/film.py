@@ -22,7 +22,7 @@ SIZE: ViewportSize = {"width": 1280, "height": 720}
 WIDTH, HEIGHT = 960, 540  # px, of the film
 RATE = 10  # frames/s
 START = 0.5  # s of the run
-COLOURS = 96
+COLOURS = 56  # more would make the film larger than 4 MB
 SETTLES = 0.2  # s in which a page takes in a run and its time
 ARROW = (0, 0), (0, 17), (4, 13.5), (6.6, 19.5), (9.2, 18.3), (6.6, 12.6), (12, 12.2)  # px
 TWO_FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
@@ -108,7 +108,7 @@ class Camera:
         sheet = Image.new("RGB", (WIDTH, HEIGHT * len(some)))
         for row, frame in enumerate(some):
             sheet.paste(frame, (0, HEIGHT * row))
-        palette = sheet.quantize(COLOURS, Image.Quantize.MEDIANCUT)
+        palette = sheet.quantize(COLOURS, Image.Quantize.FASTOCTREE)
         first, *others = (frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in self._frames)
         first.save(
             PICTURES / "drag.gif", save_all=True, append_images=others, duration=1000 // RATE, loop=0, optimize=False
