@@ -6,6 +6,7 @@ But for one setting, which nothing changes later: in SVG files text is text, tha
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
@@ -21,10 +22,8 @@ from app.plots.curves import Curve, Peak, Plot
 from model.dynamics.vehicle import System
 
 rcParams["svg.fonttype"] = "none"
-FONT = (
-    """font-family: 'DejaVu Sans'\""""  # of formulas, as matplotlib writes it; other texts have fonts to fall back on
-)
-FALLBACK = """font-family: 'DejaVu Sans', Verdana, sans-serif\""""  # Verdana is nearly as wide
+ONE_FONT = re.compile(rb"'DejaVu Sans'(?!,)")  # of formulas; to other texts matplotlib gives fonts to fall back on
+FALLBACK = b"'DejaVu Sans', Verdana, sans-serif"  # Verdana is nearly as wide
 DPI = 200  # of a PNG
 WIDTH, HEIGHT = 9.6, 2.6  # inches, of a plot on a page
 LEFT, RIGHT, ABOVE, BELOW = 0.5, 0.12, 0.32, 0.5  # inches around a plot, for its numbers and names
@@ -100,7 +99,7 @@ def file_of(figure: Figure, title: str, suffix: str) -> bytes:
     file = io.BytesIO()
     figure.savefig(file, format=suffix[1:], metadata={"Title": title, maker: stamp()})
     content = file.getvalue()
-    return content.replace(FONT.encode(), FALLBACK.encode()) if suffix == ".svg" else content
+    return ONE_FONT.sub(FALLBACK, content) if suffix == ".svg" else content
 
 
 def panels(figure: Figure, rows: int, columns: int) -> list[Axes]:

@@ -168,8 +168,8 @@ def test_one_cursor_goes_through_all_plots_and_the_values_at_it_are_shown(at_res
 
 def test_the_values_at_the_cursor_lie_on_the_curves_between_the_points_that_are_drawn(at_rest: Explorer) -> None:
     page = at_rest.page
-    at_rest.box("Time").fill("4.71")  # where loads change fast
-    at_rest.box("Time").press("Enter")
+    at_rest.box("Time, s").fill("4.71")  # where loads change fast
+    at_rest.box("Time, s").press("Enter")
     at_rest.wait_for_value("Time, s", "now === 4.71")
     for tab in ("Loads", "Ride"):
         show(page, tab)
