@@ -25,11 +25,11 @@ def test_a_page_waits_for_its_server_and_comes_back_as_it_was(browser: Browser) 
         page.wait_for_function(
             "text => Object.values(localStorage).some(stored => stored.includes(text))", arg='"drive.speed_kmh": 15.5'
         )
-        slider = explorer.wait_until_still(lambda: explorer.control("Time, s").bounding_box())
         explorer.pause()
         explorer.press("Time, s", "Home")
         explorer.press("Time, s", "ArrowRight")
         page.wait_for_function("() => sessionStorage.getItem('trackride-place')?.includes('\"time\": 0.01,')")
+        slider = explorer.wait_until_still(lambda: explorer.control("Time, s").bounding_box())
     lost = page.locator(".trackride-lost")
     expect(lost).to_be_visible()
     explorer.press("Speed", "ArrowRight")

@@ -20,6 +20,7 @@ def test_all_of_the_page_is_told_in_us_units_and_back(browser: Browser, address:
     card = page.locator(".trackride-wheel")
     expect(card).to_contain_text("kN")
     explorer.pause()
+    explorer.press("Time, s", "Home")  # where the wheel is on the ground
     explorer.fold("View")
     page.get_by_role("button", name="US", exact=True).click()
     expect(page.locator("label", has_text="Speed, mph")).to_be_visible()
